@@ -1,0 +1,147 @@
+"""What a Debian package of a catkin package says of itself: its name, version, dependencies, control file, changelog, copyright and man pages.
+
+Nothing here reads the system or the build: what is installed where is asked through a function, so that tests can answer.
+"""
+import re
+import textwrap
+
+# Keys of rosdep in our package.xml files that are no packages of ROS: the names of Debian, as scripts/deps has them.
+ROSDEP = {"cli11": "libcli11-dev", "eigen": "libeigen3-dev", "libpcl-all-dev": "libpcl-dev", "libqt5-core": "libqt5core5a", "libqt5-gui": "libqt5gui5",
+          "libqt5-widgets": "libqt5widgets5", "nlohmann-json-dev": "nlohmann-json3-dev", "suitesparse": "libsuitesparse-dev", "tinyxml2": "libtinyxml2-dev",
+          "yaml-cpp": "libyaml-cpp-dev", "zlib": "zlib1g-dev"}
+# What the package does without, though its package.xml has it: a robot without a screen leaves it out by --no-install-recommends.
+RECOMMENDED = {"hyselam_bringup": ("hyselam_rviz_plugins", "rviz")}
+# Programs that its scripts call where they are installed.
+SUGGESTED = {"hyselam_topo": ("espeak-ng", "pocketsphinx", "pocketsphinx-en-us")}
+# What lintian finds and is as we want it: the tag, the kind of package that has it ("any", or one that holds a "library"), the reason.
+OVERRIDES = (
+    ("initial-upload-closes-no-bugs", "any", "these packages are for one's own systems and are not uploaded to Debian"),
+    ("shared-library-lacks-version", "library", "the packages depend on one another by exact versions, the libraries have none of their own"),
+)
+
+
+def debian_name(package):
+    """Of a catkin package, as Debian names those of ROS."""
+    return "ros-" + package.replace("_", "-")
+
+
+def debian_version(version, release, commit_time="", commit="", modified=False):
+    """Of the version of package.xml on a release such as debian12; between tags (a commit is given) newer commits have higher ones."""
+    between = f"+git{commit_time}.{commit}" if commit else ""
+    return f"{version}{between}{'+modified' if modified else ''}-1~{release}"
+
+
+def owned(owner, *paths):
+    """The packages that own one of the paths, without repetition."""
+    return sorted({p for p in map(owner, paths) if p})
+
+
+def names_of(key, owner, python):
+    """The Debian packages behind a key of package.xml, (needed to run, wanted to compile against it).
+
+    `owner` tells the installed package that owns a path, None if nobody does. What a C++ library needs is told by dpkg-shlibdeps and left out
+    here: of a package of ROS these are its programs, its Python module if `python`, and what else of it is no -dev package.
+    """
+    if key in ROSDEP or key.startswith("python3-"):
+        names = [ROSDEP.get(key, key)]
+    else:
+        names = owned(owner, f"/usr/lib/{key}", *([f"/usr/lib/python3/dist-packages/{key}/__init__.py"] if python else []))
+        share = owned(owner, f"/usr/share/{key}/package.xml")
+        names += [n for n in share if n.endswith("-dev") or not names]
+        names = names or owned(owner, f"/usr/share/doc/{key}/copyright")
+    return [n for n in names if not n.endswith("-dev")], [n for n in names if n.endswith("-dev")]
+
+
+def relations(package, packed, owner, python):
+    """Depends, Recommends and Suggests that package.xml tells of, without those of libraries.
+
+    `package` is a package of catkin_pkg; `packed` maps the packages that are packed with it to their versions. Between these the versions are
+    exact: their libraries have no version of their own. @raises KeyError for a key that nothing installed answers to.
+    """
+    depends, recommends, suggests = set(), set(), set(SUGGESTED.get(package.name, ()))
+    wanted = {d.name: True for d in package.exec_depends}
+    wanted = {**{d.name: False for d in package.build_export_depends}, **wanted}
+    for key, runs in wanted.items():
+        target = recommends if key in RECOMMENDED.get(package.name, ()) else depends
+        if key in packed:
+            target.add(f"{debian_name(key)} (= {packed[key]})")
+            continue
+        needed, development = names_of(key, owner, python)
+        if not needed and not development:
+            raise KeyError(f"{package.name}: no installed package is known that holds {key}")
+        if runs:
+            target.update(needed)
+        suggests.update(development)
+    return {"Depends": sorted(depends), "Recommends": sorted(recommends), "Suggests": sorted(suggests)}
+
+
+def synopsis(description):
+    """The line that lists of packages show: the first sentence, or as much of it as fits."""
+    first = re.split(r"(?<=[a-z)])[.:;](?:\s|$)", " ".join(description.split()))[0].rstrip(".")
+    first = re.sub(r"^(The|A|An) ", "", first)
+    return textwrap.shorten(first, 78, placeholder=" …")
+
+
+def control(fields, description):
+    """The control file: fields without a value are left out."""
+    lines = [f"{k}: {', '.join(v) if isinstance(v, list) else v}" for k, v in fields.items() if v]
+    text = textwrap.wrap(" ".join(description.split()), 78)
+    return "\n".join([*lines, f"Description: {synopsis(description)}", *(" " + line for line in text)]) + "\n"
+
+
+def changelog(name, version, suite, maintainer, date):
+    return f"{name} ({version}) {suite}; urgency=medium\n\n  * Packed from the sources; what changed is in changelog.gz.\n\n -- {maintainer}  {date}\n"
+
+
+def copyright_file(package, maintainer, license_text):
+    """In Debian's machine-readable form, of the text of LICENSE (3-clause BSD)."""
+    holder = re.search(r"^Copyright \(c\) (.*)$", license_text, re.MULTILINE).group(1)
+    text = license_text.split(holder, 1)[1].strip()
+    body = "\n".join(" " + (line.rstrip() or ".") for line in text.splitlines())
+    return ("Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/\n"
+            f"Upstream-Name: {package}\nUpstream-Contact: {maintainer}\n\nFiles: *\nCopyright: {holder}\nLicense: BSD-3-clause\n{body}\n")
+
+
+def purpose(text, package):
+    """One line of what a program is for, of its --help: the first paragraph that is no usage."""
+    for paragraph in re.split(r"\n\s*\n", text.strip()):
+        line = " ".join(paragraph.split())
+        if line and not re.match(r"(usage|options|positionals|optional arguments|positional arguments|subcommands)\b", line, re.IGNORECASE):
+            return textwrap.shorten(re.split(r"[.:](?:\s|$)", line)[0], 90, placeholder=" …")
+    return f"a program of {package}"
+
+
+def man_page(package, tool, text, version, date):
+    """A page of section 1, of what `TOOL --help` prints."""
+    def escaped(line):
+        line = line.rstrip().replace("\\", "\\e").replace("-", "\\-")
+        return "\\&" + line if line.startswith((".", "'")) else line
+
+    name = f"{package}-{tool}"
+    return "\n".join([f'.TH {escaped(name.upper())} 1 "{date}" "HySeLAM {version}" "HySeLAM"', ".SH NAME",
+                      f"{escaped(name)} \\- {escaped(purpose(text, package))}", ".SH SYNOPSIS", f".B rosrun {escaped(package)} {escaped(tool)}",
+                      "[options]", ".SH DESCRIPTION", ".nf", *map(escaped, text.strip().splitlines()), ".fi"]) + "\n"
+
+
+def overrides(name, kinds):
+    """The file of overrides for lintian, "" if there are none."""
+    return "".join(f"# {reason}\n{name}: {tag}\n" for tag, kind, reason in OVERRIDES if kind in kinds)
+
+
+def maintainer_scripts(name, python, units, state):
+    """postinst, prerm and postrm as texts, those that have something to do. `units` are templates of systemd, `state` folders gone with a purge."""
+    post, pre, rm = [], [], []
+    if python:
+        # Without it, modules that root imports would leave __pycache__ behind.
+        post.append(f'if [ "$1" = configure ] && command -v py3compile > /dev/null; then py3compile -p {name}; fi')
+        pre.append(f"if command -v py3clean > /dev/null; then py3clean -p {name}; fi")
+    if units:
+        running = "[ -d /run/systemd/system ]"
+        post.append(f"if {running}; then systemctl daemon-reload || true; fi")
+        for unit in units:
+            pre.append(f"if [ \"$1\" = remove ] && {running}; then systemctl disable --now '{unit.replace('@', '@*')}' || true; fi")
+        rm.append(f"if {running}; then systemctl daemon-reload || true; fi")
+    if state:
+        rm.append(f"if [ \"$1\" = purge ]; then rm -rf {' '.join(state)}; fi")
+    scripts = {"postinst": post, "prerm": pre, "postrm": rm}
+    return {k: "\n".join(["#!/bin/sh", "set -e", *v]) + "\n" for k, v in scripts.items() if v}
