@@ -77,9 +77,10 @@ def relations(package, packed, owner, python):
 
 def synopsis(description):
     """The line that lists of packages show: the first sentence, or as much of it as fits."""
-    first = re.split(r"(?<=[a-z)])[.:;](?:\s|$)", " ".join(description.split()))[0].rstrip(".")
+    first = re.split(r"(?<=[a-z)])[.;](?:\s|$)", " ".join(description.split()))[0].rstrip(".")
     first = re.sub(r"^(The|A|An) ", "", first)
-    return textwrap.shorten(first, 78, placeholder=" …")
+    head = first.split(":")[0]
+    return first if len(first) <= 78 else head if 20 <= len(head) <= 78 else textwrap.shorten(first, 78, placeholder=" …")
 
 
 def control(fields, description):
