@@ -9,14 +9,16 @@ import textwrap
 ROSDEP = {"cli11": "libcli11-dev", "eigen": "libeigen3-dev", "libpcl-all-dev": "libpcl-dev", "libqt5-core": "libqt5core5a", "libqt5-gui": "libqt5gui5",
           "libqt5-widgets": "libqt5widgets5", "nlohmann-json-dev": "nlohmann-json3-dev", "suitesparse": "libsuitesparse-dev", "tinyxml2": "libtinyxml2-dev",
           "yaml-cpp": "libyaml-cpp-dev", "zlib": "zlib1g-dev"}
+PART_OF = "This package is part of HySeLAM, which gives a mobile robot with ROS a map that people can talk about."
 # What the package does without, though its package.xml has it: a robot without a screen leaves it out by --no-install-recommends.
 RECOMMENDED = {"hyselam_bringup": ("hyselam_rviz_plugins", "rviz")}
-# Programs that its scripts call where they are installed.
-SUGGESTED = {"hyselam_topo": ("espeak-ng", "pocketsphinx", "pocketsphinx-en-us")}
-# What lintian finds and is as we want it: the tag, the kind of package that has it ("any", or one that holds a "library"), the reason.
+# What its scripts call where it is installed, and say where it is not.
+SUGGESTED = {"hyselam_topo": ("espeak-ng", "pocketsphinx", "pocketsphinx-en-us"), "ngram_slam": ("python3-distributed",)}
+# What lintian finds and is as we want it: the tag, the kind of package that has it (one that holds a "library", a file for "pkg-config"), the reason.
 OVERRIDES = (
-    ("initial-upload-closes-no-bugs", "any", "these packages are for one's own systems and are not uploaded to Debian"),
     ("shared-library-lacks-version", "library", "the packages depend on one another by exact versions, the libraries have none of their own"),
+    ("package-name-doesnt-match-sonames", "library", "a package is what a catkin package installs: libraries beside programs and launch files"),
+    ("pkg-config-unavailable-for-cross-compilation", "pkg-config", "catkin writes lib/pkgconfig, and rospack and catkin_make are not for cross-compilation"),
 )
 
 
@@ -25,10 +27,13 @@ def debian_name(package):
     return "ros-" + package.replace("_", "-")
 
 
-def debian_version(version, release, commit_time="", commit="", modified=False):
-    """Of the version of package.xml on a release such as debian12; between tags (a commit is given) newer commits have higher ones."""
-    between = f"+git{commit_time}.{commit}" if commit else ""
-    return f"{version}{between}{'+modified' if modified else ''}-1~{release}"
+def debian_version(version, release, commit_time="", modified=False):
+    """Of the version of package.xml on a release such as debian12; between tags (the time of a commit is given) newer commits have higher ones.
+
+    No longer than file names may be; the commit is told by changelog(). What was packed from a modified tree has an m behind the time.
+    """
+    between = f"+{commit_time}{'m' if modified else ''}" if commit_time else ""
+    return f"{version}{between}-1~{release}"
 
 
 def owned(owner, *paths):
@@ -76,22 +81,25 @@ def relations(package, packed, owner, python):
 
 
 def synopsis(description):
-    """The line that lists of packages show: the first sentence, or as much of it as fits."""
+    """The line that lists of packages show: the first sentence; of a long one what its colon ends, or its first clauses, or words."""
     first = re.split(r"(?<=[a-z)])[.;](?:\s|$)", " ".join(description.split()))[0].rstrip(".")
     first = re.sub(r"^(The|A|An) ", "", first)
-    head = first.split(":")[0]
-    return first if len(first) <= 78 else head if 20 <= len(head) <= 78 else textwrap.shorten(first, 78, placeholder=" …")
+    if len(first) <= 78:
+        return first
+    ends = [m.start() for pattern in (r"[:,]\s", r":\s") for m in re.finditer(pattern, first) if (20 if "," in pattern else 36) <= m.start() <= 78]
+    return first[:ends[-1]] if ends else re.sub(r"( (a|an|the|and|of|in|with|by))+$", "", textwrap.shorten(first, 78, placeholder=""))
 
 
 def control(fields, description):
     """The control file: fields without a value are left out."""
     lines = [f"{k}: {', '.join(v) if isinstance(v, list) else v}" for k, v in fields.items() if v]
-    text = textwrap.wrap(" ".join(description.split()), 78)
+    text = textwrap.wrap(f"{PART_OF} {' '.join(description.split())}", 78)
     return "\n".join([*lines, f"Description: {synopsis(description)}", *(" " + line for line in text)]) + "\n"
 
 
-def changelog(name, version, suite, maintainer, date):
-    return f"{name} ({version}) {suite}; urgency=medium\n\n  * Packed from the sources; what changed is in changelog.gz.\n\n -- {maintainer}  {date}\n"
+def changelog(name, version, suite, maintainer, date, commit):
+    return (f"{name} ({version}) {suite}; urgency=medium\n\n  * Packed from the sources at commit {commit}; what changed is in changelog.gz.\n\n"
+            f" -- {maintainer}  {date}\n")
 
 
 def copyright_file(package, maintainer, license_text):
