@@ -10,6 +10,8 @@ ROSDEP = {"cli11": "libcli11-dev", "eigen": "libeigen3-dev", "libpcl-all-dev": "
           "libqt5-widgets": "libqt5widgets5", "nlohmann-json-dev": "nlohmann-json3-dev", "suitesparse": "libsuitesparse-dev", "tinyxml2": "libtinyxml2-dev",
           "yaml-cpp": "libyaml-cpp-dev", "zlib": "zlib1g-dev"}
 PART_OF = "This package is part of HySeLAM, which gives a mobile robot with ROS a map that people can talk about."
+# What programs of people are started by: rosrun, as their man pages say.
+STARTERS = ("rosbash", "rospack-tools")
 # What the package does without, though its package.xml has it: a robot without a screen leaves it out by --no-install-recommends.
 RECOMMENDED = {"hyselam_bringup": ("hyselam_rviz_plugins", "rviz")}
 # What its scripts call where it is installed, and say where it is not.
@@ -78,6 +80,15 @@ def relations(package, packed, owner, python):
             target.update(needed)
         suggests.update(development)
     return {"Depends": sorted(depends), "Recommends": sorted(recommends), "Suggests": sorted(suggests)}
+
+
+def plugin_description(text):
+    """Of pluginlib, as it is to be in /usr, and the libraries it names.
+
+    Where CMAKE_PREFIX_PATH is not set, Debian's pluginlib looks for a library by its bare name in /usr/lib/ARCHITECTURE/ros.
+    """
+    pattern = r'(<library\s[^>]*path=")lib/(lib[A-Za-z0-9_]+)"'
+    return re.sub(pattern, r'\1\2"', text), [name for _, name in re.findall(pattern, text)]
 
 
 def synopsis(description):

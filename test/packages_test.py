@@ -114,6 +114,16 @@ class PackagesTest(unittest.TestCase):
             run = subprocess.run(["man", "-l", "-"], input=page, capture_output=True, text=True, check=False, env={**os.environ, "MANWIDTH": "100"})
             self.assertIn(".dots 'quotes' a\\b --json", run.stdout)
 
+    def test_plugins_are_found_without_an_environment(self):
+        described = 0
+        for package in find_packages(str(ROOT / "src")):
+            for path in (ROOT / "src" / package).glob("*plugin*.xml"):
+                text, names = texts.plugin_description(path.read_text())
+                self.assertEqual([f'path="{n}"' in text for n in names], [True], path)
+                self.assertNotIn('"lib/', text)
+                described += 1
+        self.assertGreater(described, 5)
+
     def test_maintainer_scripts_are_shell(self):
         scripts = texts.maintainer_scripts("ros-x", True, ["x@.service"], ["/var/lib/x"])
         self.assertEqual(sorted(scripts), ["postinst", "postrm", "prerm"])
