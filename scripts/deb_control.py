@@ -14,6 +14,8 @@ PART_OF = "This package is part of HySeLAM, which gives a mobile robot with ROS 
 STARTERS = ("rosbash", "rospack-tools")
 # What the package does without, though its package.xml has it: a robot without a screen leaves it out by --no-install-recommends.
 RECOMMENDED = {"hyselam_bringup": ("hyselam_rviz_plugins", "rviz")}
+# What people who look at a running stack call, and the tutorials do.
+OPERATORS = {"hyselam_bringup": ("python3-rosnode", "python3-rosservice", "python3-rostopic")}
 # What its scripts call where it is installed, and say where it is not.
 SUGGESTED = {"hyselam_topo": ("espeak-ng", "pocketsphinx", "pocketsphinx-en-us"), "ngram_slam": ("python3-distributed",)}
 # What lintian finds and is as we want it: the tag, the kind of package that has it (one that holds a "library", a file for "pkg-config"), the reason.
@@ -65,7 +67,7 @@ def relations(package, packed, owner, python):
     `package` is a package of catkin_pkg; `packed` maps the packages that are packed with it to their versions. Between these the versions are
     exact: their libraries have no version of their own. @raises KeyError for a key that nothing installed answers to.
     """
-    depends, recommends, suggests = set(), set(), set(SUGGESTED.get(package.name, ()))
+    depends, recommends, suggests = set(), set(OPERATORS.get(package.name, ())), set(SUGGESTED.get(package.name, ()))
     wanted = {d.name: True for d in package.exec_depends}
     wanted = {**{d.name: False for d in package.build_export_depends}, **wanted}
     for key, runs in wanted.items():
@@ -159,7 +161,8 @@ def maintainer_scripts(name, python, units, state):
         running = "[ -d /run/systemd/system ]"
         post.append(f"if {running}; then systemctl daemon-reload || true; fi")
         for unit in units:
-            pre.append(f"if [ \"$1\" = remove ] && {running}; then systemctl disable --now '{unit.replace('@', '@*')}' || true; fi")
+            pre.append(f"if [ \"$1\" = remove ] && {running}; then systemctl stop '{unit.replace('@', '@*')}' || true; fi")
+            rm.append(f"if [ \"$1\" = purge ]; then rm -f /etc/systemd/system/*.wants/{unit.replace('@', '@*')}; fi")
         rm.append(f"if {running}; then systemctl daemon-reload || true; fi")
     if state:
         rm.append(f"if [ \"$1\" = purge ]; then rm -rf {' '.join(state)}; fi")

@@ -65,7 +65,7 @@ class PackagesTest(unittest.TestCase):
     def test_relations(self):
         package = Package("hyselam_bringup", ["hyselam_msgs", "hyselam_rviz_plugins", "nodelet", "roscpp"], ["zlib", "nodelet"])
         found = texts.relations(package, {"hyselam_msgs": "1-1", "hyselam_rviz_plugins": "2-1"}, OWNERS.get, False)
-        self.assertEqual(found, {"Depends": ["libnodeletlib-tools", "ros-hyselam-msgs (= 1-1)"], "Recommends": ["ros-hyselam-rviz-plugins (= 2-1)"],
+        self.assertEqual(found, {"Depends": ["libnodeletlib-tools", "ros-hyselam-msgs (= 1-1)"], "Recommends": ["python3-rosnode", "python3-rosservice", "python3-rostopic", "ros-hyselam-rviz-plugins (= 2-1)"],
                                  "Suggests": ["libroscpp-dev", "zlib1g-dev"]})
         with self.assertRaisesRegex(KeyError, "ngram_slam: .* no_such_key"):
             texts.relations(Package("ngram_slam", ["no_such_key"]), {}, OWNERS.get, False)
@@ -79,7 +79,7 @@ class PackagesTest(unittest.TestCase):
 
     def test_what_scripts_call_is_what_the_tests_of_them_have(self):
         listed = subprocess.run([str(ROOT / "scripts/deps"), "--list"], capture_output=True, text=True, check=True).stdout.split()
-        self.assertEqual({n for names in texts.SUGGESTED.values() for n in names} - set(listed), set())
+        self.assertEqual({n for kind in (texts.SUGGESTED, texts.OPERATORS) for names in kind.values() for n in names} - set(listed), set())
 
     def test_names_of_files_are_short_enough_for_lintian(self):
         version = texts.debian_version("0.1.0", "debian12", "20260102.000000", True)
@@ -130,7 +130,8 @@ class PackagesTest(unittest.TestCase):
         for text in scripts.values():
             self.assertEqual(subprocess.run(["sh", "-n"], input=text, text=True, check=False).returncode, 0, text)
         self.assertIn('if [ "$1" = purge ]; then rm -rf /var/lib/x; fi', scripts["postrm"])
-        self.assertIn("'x@*.service'", scripts["prerm"])
+        self.assertIn("systemctl stop 'x@*.service'", scripts["prerm"])
+        self.assertIn("rm -f /etc/systemd/system/*.wants/x@*.service", scripts["postrm"])
         self.assertEqual(texts.maintainer_scripts("ros-x", False, [], []), {})
 
     def test_every_override_has_a_reason(self):
