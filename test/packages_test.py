@@ -48,7 +48,8 @@ class Package:
 
 class PackagesTest(unittest.TestCase):
     def test_newer_commits_have_higher_versions(self):
-        versions = [texts.debian_version("0.1.0", "debian12"), texts.debian_version("0.1.0", "debian12", "20260101.000000"), texts.debian_version("0.1.0", "debian12", "20260102.000000"),
+        versions = [texts.debian_version("0.1.0", "debian12"), texts.debian_version("0.1.0", "debian12", "20260101.000000"),
+                    texts.debian_version("0.1.0", "debian12", "20260102.000000"),
                     texts.debian_version("0.1.0", "debian12", "20260102.000000", True), texts.debian_version("0.1.0", "debian12", "20260102.000001"),
                     texts.debian_version("0.1.1", "debian12")]
         self.assertEqual(versions[0], "0.1.0-1~debian12")
@@ -65,7 +66,8 @@ class PackagesTest(unittest.TestCase):
     def test_relations(self):
         package = Package("hyselam_bringup", ["hyselam_msgs", "hyselam_rviz_plugins", "nodelet", "roscpp"], ["zlib", "nodelet"])
         found = texts.relations(package, {"hyselam_msgs": "1-1", "hyselam_rviz_plugins": "2-1"}, OWNERS.get, False)
-        self.assertEqual(found, {"Depends": ["libnodeletlib-tools", "ros-hyselam-msgs (= 1-1)"], "Recommends": ["python3-rosnode", "python3-rosservice", "python3-rostopic", "ros-hyselam-rviz-plugins (= 2-1)"],
+        self.assertEqual(found, {"Depends": ["libnodeletlib-tools", "ros-hyselam-msgs (= 1-1)"],
+                                 "Recommends": ["python3-rosnode", "python3-rosservice", "python3-rostopic", "ros-hyselam-rviz-plugins (= 2-1)"],
                                  "Suggests": ["libroscpp-dev", "zlib1g-dev"]})
         with self.assertRaisesRegex(KeyError, "ngram_slam: .* no_such_key"):
             texts.relations(Package("ngram_slam", ["no_such_key"]), {}, OWNERS.get, False)
@@ -147,6 +149,22 @@ class PackagesTest(unittest.TestCase):
         self.assertEqual(variables["ROS_HOME"], "/var/lib/hyselam/example")
         _, command = script.of_unit(UNIT.read_text(), "HYSELAM_LAUNCH=slam.launch\nROSLAUNCH_OPTIONS=--wait\n", "a")
         self.assertEqual(command, ["/usr/bin/roslaunch", "--wait", "hyselam_bringup", "slam.launch"])
+
+    def test_what_apt_downloads_is_read(self):
+        script = loaded("check_deb")
+        text = ("0 upgraded, 533 newly installed, 0 to remove and 0 not upgraded.\nNeed to get {}272 MB of archives.\n"
+                "After this operation, 1326 MB of additional disk space will be used.\n")
+        for had in ("", "0 B/"):
+            self.assertEqual(script.downloads(text.format(had)), ("533", "272 MB", "1326 MB"))
+        self.assertIsNone(script.downloads("0 upgraded, 0 newly installed, 0 to remove and 0 not upgraded.\n"))
+
+    def test_what_runs_in_the_system_is_shell(self):
+        script = loaded("check_deb")
+        variables, command = script.of_unit(UNIT.read_text(), CONF.read_text(), "example")
+        for text in (script.BARE, script.UNOWNED, script.DEMO, script.HELP, script.BOOT, script.BOOTED, script.ACTS, script.unit_step(variables, command)):
+            run = subprocess.run(["bash", "-n"], input=text, text=True, capture_output=True, check=False)
+            self.assertEqual((run.returncode, run.stderr), (0, ""), text)
+        compile(script.PROBE, "PROBE", "exec")
 
     def test_the_unit_s_user_has_no_rights(self):
         text = UNIT.read_text()
