@@ -9,6 +9,7 @@ import yaml
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.append(str(ROOT / "src/hyselam_common/scripts"))
 
+import rospy_threads  # noqa: E402, F401
 from html_page import write_page  # noqa: E402, F401 (for the reports)
 
 PLAN = ROOT / "src/hyselam_sim/plans/office.yaml"

@@ -405,6 +405,7 @@ class KnowledgeTest(unittest.TestCase):
         """The tool as a module."""
         path = os.path.join(rospkg.RosPack().get_path("hyselam_bringup"), "scripts", "knowledge")
         module = types.ModuleType("knowledge")
+        module.__file__ = path
         with open(path) as file:
             exec(compile(file.read(), path, "exec"), module.__dict__)
         return module

@@ -2,6 +2,8 @@
 // which knows the last metres only.
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "drawn_room.hpp"
 #include "fsd_localization/localizer.hpp"
 #include "fsd_localization/search/followed_places.hpp"
@@ -75,30 +77,41 @@ hyselam::OccupancyGrid twinRooms() {
 
 }  // namespace
 
-// A search is never sure: the wall is little of what it compares. The filter sees it again and
-// again.
+// The search is not sure: the wall is little of what it compares. The filter sees it again and
+// again. Which room its particles gather in first is chance, so that it is done from many starts:
+// in the right one it is sure soon, in the other one it is given up and begins again.
 TEST(Localizer, aTwinIsOutlivedThatTheSearchCannotTellApart) {
   const auto map = twinRooms();
   const GridRayCaster rays(map);
-  Localizer localizer(map, LocalizerParams{});
-  Pose2 at{0.5 * map.geometry.width * map.geometry.resolution + 2.0, 2.0, 0.0}, wheels{};
-  std::optional<LocalizationResult> last;
-  double surest = 0.0, first_sure = 0.0;
-  for (int i = 0; i < 320; ++i) {
-    at = at * Pose2{0.02, 0.0, 0.02};  // a circle of 1 m
-    wheels = wheels * Pose2{0.02, 0.0, 0.02};
-    const auto r = localizer.update(look(rays, at, 0.1 * i), wheels);
-    if (!r) continue;
-    surest = std::max(surest, r->place_probability.value_or(0.0));
-    if (r->converged) {
-      EXPECT_LT(distance(r->base_in_map, at), 0.3) << "after " << r->travelled << " m";
-      if (first_sure == 0.0) first_sure = r->travelled;
+  int soon = 0;
+  for (int seed = 1; seed <= 12; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    LocalizerParams params;
+    params.seed = static_cast<std::uint64_t>(seed);
+    Localizer localizer(map, params);
+    Pose2 at{0.5 * map.geometry.width * map.geometry.resolution + 2.0, 2.0, 0.0}, wheels{};
+    std::optional<LocalizationResult> last;
+    double surest = 0.0, first_sure = 0.0;
+    for (int i = 0; i < 700; ++i) {
+      at = at * Pose2{0.02, 0.0, 0.02};  // a circle of 1 m
+      wheels = wheels * Pose2{0.02, 0.0, 0.02};
+      const auto r = localizer.update(look(rays, at, 0.1 * i), wheels);
+      if (!r) continue;
+      last = r;
+      if (r->converged) {
+        EXPECT_LT(distance(r->base_in_map, at), 0.3) << "after " << r->travelled << " m";
+        if (first_sure == 0.0) first_sure = r->travelled;
+      } else if (first_sure == 0.0) {
+        surest = std::max(surest, r->place_probability.value_or(0.0));
+      }
     }
-    last = r;
+    ASSERT_TRUE(last);
+    EXPECT_LT(surest, 0.98) << "the search alone is not sure";
+    EXPECT_TRUE(last->converged) << "first sure after " << first_sure << " m";
+    EXPECT_GT(first_sure, 1.0)
+        << "nor is the filter at once: search and filter agreed for 2 m, turns counted";
+    EXPECT_LT(first_sure, 12.0);
+    if (first_sure < 4.0) ++soon;
   }
-  EXPECT_LT(surest, 0.98) << "the search alone is not sure";
-  EXPECT_TRUE(last->converged);
-  EXPECT_GT(first_sure, 1.0)
-      << "nor is the filter at once: search and filter agreed for 2 m, turns counted";
-  EXPECT_LT(first_sure, 4.0);
+  EXPECT_GT(soon, 0);
 }

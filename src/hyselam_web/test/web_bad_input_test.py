@@ -35,6 +35,8 @@ REFUSED = {
     "a_pose_of_1e999": ('{"do":"pose","x":1e999,"y":0,"yaw":0}', "invalid"), "a_pose_beyond_the_world": ('{"do":"pose","x":1e300,"y":0,"yaw":0}', "invalid"),
     "a_pose_without_heading": ('{"do":"pose","x":0,"y":0}', "invalid"), "a_wall_of_texts": ('{"do":"wall","ax":"0","ay":0,"bx":1,"by":1}', "invalid"),
     "a_flag_that_is_a_number": ('{"do":"hide","on":1}', "invalid"), "a_huge_number": ('{"do":"go","place":%s,"language":"en"}' % ("9" * 5000), "malformed"),
+    "a_number_of_too_many_digits": ('{"do":"go","place":%s,"language":"en"}' % ("9" * (limits.MAX_DIGITS + 1)), "malformed"),
+    "a_number_of_many_digits": ('{"do":"go","place":%s,"language":"en"}' % ("9" * limits.MAX_DIGITS), "invalid"),
 }
 
 

@@ -37,7 +37,7 @@ Segments room(const std::vector<hyselam_sim::Point2>& boxes) {
 }
 
 /// A visit of the room, from both ends.
-void visit(const Segments& segments, std::uint32_t run, SlamState* state) {
+void visitRoom(const Segments& segments, std::uint32_t run, SlamState* state) {
   hyselam::Rng rng(run + 1);
   const hyselam_sim::PlanRayCaster world(segments);
   const hyselam_sim::LaserParams laser;
@@ -80,7 +80,7 @@ const std::vector<hyselam_sim::Point2> kAfter = {{3.0, 1.0}, {4.0, 3.0}};
 SlamState visits(const std::vector<std::vector<hyselam_sim::Point2>>& boxes) {
   SlamState state;
   for (std::size_t run = 0; run < boxes.size(); ++run) {
-    visit(room(boxes[run]), static_cast<std::uint32_t>(run), &state);
+    visitRoom(room(boxes[run]), static_cast<std::uint32_t>(run), &state);
   }
   return state;
 }
@@ -185,7 +185,7 @@ TEST(PresentMap, whatWasSettledIsUnderWhatWasSeenSince) {
   // Two robots go on with maps of which keyframes were dropped, as other things stand there now.
   SlamState first = consolidated(visits({kBefore, kBefore, kBefore}));
   ASSERT_FALSE(first.settled.cells.empty());
-  visit(room(kAfter), 3, &first);
+  visitRoom(room(kAfter), 3, &first);
   const SlamState second = first;
   const SlamState both = joinedStates({second, first});
   const std::vector<bool> all(runsOf(both), true);

@@ -6,6 +6,7 @@ MAX_TEXT = 2000  # characters of a sentence
 MAX_QUESTION = 200  # of a sentence that is only tried
 MAX_NAME = 80
 MAX_NAMES = 8
+MAX_DIGITS = 400  # of a whole number
 MAX_PAGES = 100
 MAX_PAGES_OF_ADDRESS = 40
 MAX_STRANGERS = 20  # pages without a role

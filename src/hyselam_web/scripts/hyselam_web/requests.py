@@ -67,8 +67,13 @@ def parse(text):
     """(name, fields, the page's number of it or None) of a message. @throws Refused."""
     def no_constant(_):
         raise ValueError("not a number")
+
+    def whole(digits):
+        if len(digits) > limits.MAX_DIGITS:  # Python before 3.10.7 reads any, in time that grows by their square
+            raise ValueError("too many digits")
+        return int(digits)
     try:
-        message = json.loads(text, parse_constant=no_constant)
+        message = json.loads(text, parse_constant=no_constant, parse_int=whole)
     except (ValueError, RecursionError):
         raise Refused("malformed", "this is no JSON")
     number = message.pop("n", None) if isinstance(message, dict) else None
