@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <opencv2/imgproc.hpp>
 
 #include "hyselam_common/pose2.hpp"
@@ -76,9 +77,9 @@ TEST(StraightCorridors, WallsThatAreInterruptedMakeOneCorridor) {
       findStraightCorridors(space, findFurniture(space));
   ASSERT_FALSE(corridors.empty());
   const StraightCorridor& c = corridors.front();
-  EXPECT_GT(c.odds, 0.0);
-  EXPECT_NEAR(2.0, 2.0 * c.half_width * kCell, 0.2);
-  EXPECT_GE(std::hypot(c.end.x - c.start.x, c.end.y - c.start.y) * kCell, 20.0);
+  EXPECT_GT(c.odds(), 0.0);
+  EXPECT_NEAR(2.0, 2.0 * c.halfWidth() * kCell, 0.2);
+  EXPECT_GE(cv::norm(c.end() - c.start()) * kCell, 20.0);
   EXPECT_TRUE(c.contains(cv::Point2d(15.0 / kCell - space.origin.x, 3.0 / kCell - space.origin.y)));
   EXPECT_FALSE(
       c.contains(cv::Point2d(15.0 / kCell - space.origin.x, 6.0 / kCell - space.origin.y)));
@@ -249,12 +250,14 @@ TEST(GeometricEvidence, NothingNarrowsABentCorridorAndADoorDoes) {
       if (r > 8.0 && r < 10.0 && !gone) grid.at({x, y}) = OccupancyGrid::kFree;
     }
   const PreparedPlaces bent = preparePlaces(grid, {}, Preparation::kFull);
+  EXPECT_TRUE(bent.context.corridors.corridors.empty());
   const RegionAdjacencyGraph ring = graphOf(bent);
   int borders = 0;
   for (int a = 1; a <= ring.size(); ++a)
     for (const auto& [b, index] : ring.node(a).borders) {
       if (b < a || ring.border(index).open <= 0.0) continue;
       ++borders;
+      EXPECT_GT(ring.border(index).passage.evenness, 0.9) << a << ' ' << b;
       EXPECT_GT(geometricEvidence(ring, a, b), 0.25) << a << ' ' << b;
     }
   EXPECT_GE(borders, 1);
@@ -332,5 +335,109 @@ TEST(ChamferDistance, IsThatOfOpenCvBitForBit) {
     if (cv::countNonZero(within) == static_cast<int>(within.total())) continue;
     cv::distanceTransform(within, expected, cv::DIST_L2, cv::DIST_MASK_5);
     ASSERT_EQ(0, cv::norm(expected, chamferDistance(within), cv::NORM_INF)) << round;
+  }
+}
+
+namespace {
+
+/// Two rooms, a passage of 3 m between them, and a corridor with doors, nothing symmetrical.
+OccupancyGrid wing() {
+  OccupancyGrid grid = unseen(30, 14);
+  room(grid, 2, 2, 8, 7);
+  room(grid, 8.2, 2, 15, 7);
+  fill(grid, 8.0, 3.0, 8.2, 6.0, OccupancyGrid::kFree);
+  room(grid, 2, 7.2, 28, 9.2);
+  for (const double x : {4.0, 12.0, 20.0}) fill(grid, x, 7.0, x + 1.0, 7.2, OccupancyGrid::kFree);
+  room(grid, 16, 2, 25, 7);
+  return grid;
+}
+
+/// Turned by right angles.
+OccupancyGrid turned(const OccupancyGrid& grid, int quarters) {
+  if (quarters == 0) return grid;
+  hyselam::GridGeometry g = grid.geometry;
+  std::swap(g.width, g.height);
+  OccupancyGrid out(g, OccupancyGrid::kUnknown);
+  for (int y = 0; y < g.height; ++y)
+    for (int x = 0; x < g.width; ++x) out.at({x, y}) = grid.at({y, g.width - 1 - x});
+  return turned(out, quarters - 1);
+}
+
+}  // namespace
+
+TEST(RobotMaps, ARightAngleChangesNothing) {
+  const OccupancyGrid grid = wing();
+  const auto figures = [](const OccupancyGrid& map) {
+    const PreparedPlaces places = preparePlaces(map, {}, Preparation::kFull);
+    std::vector<double> lengths;
+    for (const StraightCorridor& c : places.context.corridors.corridors)
+      lengths.push_back(cv::norm(c.end() - c.start()));
+    std::sort(lengths.begin(), lengths.end());
+    return lengths;
+  };
+  const std::vector<double> lengths = figures(grid);
+  ASSERT_FALSE(lengths.empty());
+  const cv::Mat labels = segmentPlaces(grid).labels;
+  for (int quarters = 1; quarters < 4; ++quarters) {
+    const OccupancyGrid other = turned(grid, quarters);
+    const std::vector<double> others = figures(other);
+    ASSERT_EQ(lengths.size(), others.size()) << quarters;
+    for (std::size_t i = 0; i < lengths.size(); ++i) EXPECT_NEAR(lengths[i], others[i], 1.5);
+    EXPECT_EQ(segmentPlaces(grid).places, segmentPlaces(other).places) << quarters;
+  }
+}
+
+TEST(RobotMaps, CoarserCellsGiveTheSamePlaces) {
+  const OccupancyGrid grid = wing();
+  const cv::Mat labels = segmentPlaces(grid).labels;
+  for (const double factor : {1.1, 1.25, 1.4, 2.0}) {
+    hyselam::GridGeometry g = grid.geometry;
+    g.resolution *= factor;
+    g.width = static_cast<int>(g.width / factor);
+    g.height = static_cast<int>(g.height / factor);
+    OccupancyGrid coarse(g, OccupancyGrid::kUnknown);
+    const auto fine = [factor](int cell) { return static_cast<int>((cell + 0.5) * factor); };
+    for (int y = 0; y < g.height; ++y)
+      for (int x = 0; x < g.width; ++x) coarse.at({x, y}) = grid.at({fine(x), fine(y)});
+    const PlaceSegmentation places = segmentPlaces(coarse);
+    EXPECT_EQ(segmentPlaces(grid).places, places.places) << factor;
+    int same = 0, both = 0, on_walls = 0;
+    std::map<int, std::map<int, int>> shared;
+    for (int y = 0; y < g.height; ++y)
+      for (int x = 0; x < g.width; ++x) {
+        const int a = labels.at<std::uint16_t>(fine(y), fine(x));
+        const int b = places.labels.at<std::uint16_t>(y, x);
+        if (a != 0 && b != 0) ++shared[b][a], ++both;
+        if (b != 0 && coarse.at({x, y}) == OccupancyGrid::kOccupied) ++on_walls;
+      }
+    for (const auto& [b, of_b] : shared) {
+      int most = 0;
+      for (const auto& [a, cells] : of_b) most = std::max(most, cells);
+      same += most;
+    }
+    EXPECT_GT(same, 0.99 * both) << factor;
+    EXPECT_EQ(0, on_walls) << factor;
+  }
+}
+
+TEST(RobotMaps, ThreadsChangeNothing) {
+  const OccupancyGrid grid = wing();
+  cv::setNumThreads(1);
+  const cv::Mat one = segmentPlaces(grid).labels;
+  cv::setNumThreads(4);
+  for (int round = 0; round < 5; ++round)
+    EXPECT_EQ(0, cv::norm(one, segmentPlaces(grid).labels, cv::NORM_INF));
+}
+
+TEST(RobotMaps, ATinyMapAndMuchClutter) {
+  for (const int size : {1, 2, 3, 12}) {
+    hyselam::GridGeometry g;
+    g.width = g.height = size;
+    g.resolution = 0.05;
+    SegmentationParams params;
+    params.max_clutter_size = 5.0;
+    params.min_place_area = 0.0;
+    const PlaceSegmentation places = segmentPlaces(OccupancyGrid(g, OccupancyGrid::kFree), params);
+    EXPECT_LE(places.places, 1) << size;
   }
 }

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <future>
 #include <limits>
 #include <map>
 #include <set>
 
+#include "alongside.hpp"
 #include "contour_walls.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/require.hpp"
@@ -216,8 +216,8 @@ std::vector<Place> buildPlaces(const OccupancyGrid& grid, const cv::Mat& labels,
   const double r = grid.geometry.resolution;
   const std::vector<Contour> contours = traceContours(labels, selection.box, selection.wanted);
   // Walls are found beside the measuring, which knows nothing of them.
-  std::future<std::vector<PlaceWalls>> found = std::async(
-      std::launch::async, [&] { return wallsAlong(contours, grid, labels, params.walls); });
+  std::future<std::vector<PlaceWalls>> found =
+      alongside([&] { return wallsAlong(contours, grid, labels, params.walls); });
   const std::vector<Region> regions = measure(labels, contours, places, r, params.walls, selection);
   std::vector<PlaceWalls> walls = found.get();
   walls.resize(static_cast<std::size_t>(places));

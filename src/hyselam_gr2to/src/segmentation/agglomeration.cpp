@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "alongside.hpp"
 #include "chamfer_distance.hpp"
 #include "furniture.hpp"
 
@@ -57,11 +58,10 @@ PreparedPlaces preparePlaces(const hyselam::OccupancyGrid& grid, const Segmentat
   // The free space alone tells where furniture and corridors are, and where basins.
   std::future<std::vector<StraightCorridor>> corridors;
   if (full) {
-    corridors = std::async(std::launch::async,
-                           [&space = prepared.space, &furniture = prepared.context.furniture] {
-                             furniture = findFurniture(space);
-                             return findStraightCorridors(space, furniture);
-                           });
+    corridors = alongside([&space = prepared.space, &furniture = prepared.context.furniture] {
+      furniture = findFurniture(space);
+      return findStraightCorridors(space, furniture);
+    });
   }
   prepared.clearance = chamferDistance(prepared.space.free);
   BasinParams basins;

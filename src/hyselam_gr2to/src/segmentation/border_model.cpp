@@ -27,6 +27,8 @@ constexpr int kLengthSteps = 2;  // to either side
 constexpr int kClearanceSteps = 1;
 constexpr std::size_t kSizes = (2 * kLengthSteps + 1) * (2 * kClearanceSteps + 1);
 
+static_assert(kSizes < 32, "a set of sizes has a bit for each");
+
 /// A border in all these sizes, which walk through a tree together as long as they answer alike:
 /// nearly always, since they differ little and in few features.
 class BorderInSizes {

@@ -23,8 +23,9 @@ struct FreeCells {
   int begin, end;
 };
 
-/// The runs of cells of a row that are not 0.
-void findRuns(const std::uint8_t* row, int width, std::vector<FreeCells>& runs) {
+/// The runs of cells of a row that are not 0, whatever they are: found in blocks, twice for each
+/// row, where connectedRuns() asks every cell for its value.
+void runsOf(const std::uint8_t* row, int width, std::vector<FreeCells>& runs) {
   runs.clear();
   for (int x = 0; x < width;) {
     while (x < width && row[x] == 0) ++x;
@@ -63,7 +64,7 @@ cv::Mat chamferDistance(const cv::Mat& mask) {
   const auto row = [&cells](int y) { return cells.ptr<int>(y + kRim) + kRim; };
   std::vector<FreeCells> runs;
   for (int y = 0; y < height; ++y) {
-    findRuns(mask.ptr<std::uint8_t>(y), width, runs);
+    runsOf(mask.ptr<std::uint8_t>(y), width, runs);
     int* own = row(y);
     for (const FreeCells run : runs) {
       std::fill(own + run.begin, own + run.end, kFar);
@@ -73,7 +74,7 @@ cv::Mat chamferDistance(const cv::Mat& mask) {
   }
   constexpr float kScale = 1.0f / (1 << kShift);
   for (int y = height - 1; y >= 0; --y) {
-    findRuns(mask.ptr<std::uint8_t>(y), width, runs);
+    runsOf(mask.ptr<std::uint8_t>(y), width, runs);
     int* own = row(y);
     float* out = distance.ptr<float>(y);
     for (const FreeCells run : runs) {

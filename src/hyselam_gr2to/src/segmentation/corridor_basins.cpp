@@ -48,7 +48,7 @@ class Painter {
     visit(c, 0.0, [&](int label, std::uint16_t& cell) {
       cell = name;
       const auto basin = static_cast<std::size_t>(label);
-      own[basin] = peaks_[basin] <= kAsWide * c.half_width ? 1 : 0;
+      own[basin] = peaks_[basin] <= kAsWide * c.halfWidth() ? 1 : 0;
     });
     visit(c, further_, [&](int label, std::uint16_t& cell) {
       if (own[static_cast<std::size_t>(label)] != 0) cell = name;
@@ -60,12 +60,12 @@ class Painter {
   /// Free cells of no corridor between the lines, up to `beyond` the ends.
   template <typename Visit>
   void visit(const StraightCorridor& c, double beyond, Visit visit) {
-    const double reach = c.half_width + beyond + 1.0;
+    const double reach = c.halfWidth() + beyond + 1.0;
     const auto row = [this](double y) {
       return static_cast<int>(std::clamp(y, 0.0, static_cast<double>(labels_.rows)));
     };
-    const int end = row(std::max(c.start.y, c.end.y) + reach + 1.0);
-    for (int y = row(std::min(c.start.y, c.end.y) - reach); y < end; ++y) {
+    const int end = row(std::max(c.start().y, c.end().y) + reach + 1.0);
+    for (int y = row(std::min(c.start().y, c.end().y) - reach); y < end; ++y) {
       const int* label = labels_.ptr<int>(y);
       std::uint16_t* out = of_cell_.ptr<std::uint16_t>(y);
       const auto [begin, last] = c.columns(y, beyond, labels_.cols);

@@ -18,7 +18,7 @@ constexpr double kDensityWindow = 0.35;    // [m]
 constexpr double kLeak = 0.15;             // [m] passages up to this are gaps between rays
 constexpr double kWalled = 0.2;            // [share] of the limits of free space, at least
 constexpr double kLargestWorking = 20e6;   // [cells] above that, coarse grids are not resampled
-constexpr double kSameResolution = 1.02;   // times the working one
+constexpr double kSameResolution = 1.02;   // times the working one, taken for it
 
 int odd(double cells) {
   return std::max(1, static_cast<int>(std::lround(cells)) | 1);
@@ -59,6 +59,22 @@ void tellWallsFromUnseen(const cv::Mat& free, cv::Mat& occupied) {
   if (cv::countNonZero(wall) < kWalled * cv::countNonZero(rim)) occupied = ~free;
 }
 
+/// Each cell that of the mask at its middle: so toGrid() finds every cell's own again. (OpenCV's
+/// nearest neighbour looks at the corner; that of the middle is newer than Noetic's version.)
+cv::Mat resampled(const cv::Mat& mask, double factor) {
+  const auto size = [factor](int cells) { return static_cast<int>(std::ceil(cells * factor)); };
+  cv::Mat out(size(mask.rows), size(mask.cols), CV_8U);
+  const auto source = [factor](int cell, int cells) {
+    return std::min(cells - 1, static_cast<int>(std::floor((cell + 0.5) / factor)));
+  };
+  for (int y = 0; y < out.rows; ++y) {
+    const std::uint8_t* from = mask.ptr<std::uint8_t>(source(y, mask.rows));
+    std::uint8_t* to = out.ptr<std::uint8_t>(y);
+    for (int x = 0; x < out.cols; ++x) to[x] = from[source(x, mask.cols)];
+  }
+  return out;
+}
+
 void findPieces(FreeSpace& space) {
   const CellRuns cells = connectedRuns(space.free, 255, true);
   space.pieces.resize(static_cast<std::size_t>(cells.pieces));
@@ -81,7 +97,9 @@ void findPieces(FreeSpace& space) {
 
 /// Pieces of furniture up to `clutter` across, standing free, are seen through.
 void seeThroughClutter(FreeSpace& space, double clutter) {
+  const cv::Rect inner(1, 1, space.free.cols - 2, space.free.rows - 2);
   for (const SolidPiece& piece : space.pieces) {
+    if ((piece.box & inner) != piece.box) continue;  // what is around a tiny map
     if (std::hypot(piece.box.width, piece.box.height) * space.resolution > clutter) continue;
     for (std::size_t i = piece.begin; i < piece.end; ++i) {
       const CellRun& run = space.solid[i];
@@ -134,14 +152,14 @@ FreeSpace findFreeSpace(const hyselam::OccupancyGrid& grid, const SegmentationPa
   }
   Masks masks = cutOut(*source, params.free_max, 8, space.origin);
   if (masks.free.empty()) return space;
-  // To the very resolution that lengths in cells and the border model were made for.
+  // To the resolution that lengths in cells and the border model were made for. Finer grids are
+  // left as they are, since thin walls would be lost.
   const double split = space.resolution / params.working_resolution;
   if (split > kSameResolution &&
       static_cast<double>(masks.free.total()) * split * split <= kLargestWorking) {
-    space.split = split;
+    space.resampled = split;
     space.resolution = params.working_resolution;
-    for (cv::Mat* mask : {&masks.free, &masks.occupied})
-      cv::resize(*mask, *mask, {}, split, split, cv::INTER_NEAREST);
+    for (cv::Mat* mask : {&masks.free, &masks.occupied}) *mask = resampled(*mask, split);
   }
   space.free = masks.free;
   clean(space, masks.occupied);
@@ -162,7 +180,7 @@ cv::Mat toGrid(const cv::Mat& labels, const FreeSpace& space, const hyselam::Occ
   const int width = grid.geometry.width, height = grid.geometry.height;
   cv::Mat out(height, width, CV_16U, cv::Scalar(0));
   const auto working = [&space](int cell, int origin) {
-    return static_cast<int>(std::floor(((cell + 0.5) / space.joined - origin) * space.split));
+    return static_cast<int>(std::floor(((cell + 0.5) / space.joined - origin) * space.resampled));
   };
   const auto rowOf = [&](int y) { return working(y, space.origin.y); };
   std::vector<int> columns(static_cast<std::size_t>(width));
@@ -172,7 +190,7 @@ cv::Mat toGrid(const cv::Mat& labels, const FreeSpace& space, const hyselam::Occ
     if (row < 0 || row >= labels.rows) continue;
     const int* from = labels.ptr<int>(row);
     std::uint16_t* to = out.ptr<std::uint16_t>(y);
-    if (space.split == 1.0 && space.joined == 1) {  // most maps, worth a loop of its own
+    if (space.resampled == 1.0 && space.joined == 1) {  // most maps, worth a loop of its own
       const int begin = std::max(0, space.origin.x);
       const int end = std::min(width, labels.cols + space.origin.x);
       for (int x = begin; x < end; ++x)

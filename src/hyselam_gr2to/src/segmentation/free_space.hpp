@@ -24,7 +24,7 @@ struct FreeSpace {
   cv::Mat closed;    ///< CV_8U, 255 where fans of rays were closed; empty: none were looked for
   double resolution = 0.0;  ///< [m/cell]
   int joined = 1;           ///< so many cells of the grid, along each axis, make one cell
-  double split = 1.0;       ///< ... of which each is then resampled to so many, at least 1
+  double resampled = 1.0;   ///< ... of which each then became so many, along each axis; at least 1
   cv::Point origin;         ///< joined cell whose corner is that of (0, 0) of `free`
   /// The connected pieces that were not free before clutter was seen through, and their cells: of
   /// a piece those from `begin` to before `end`.

@@ -37,8 +37,8 @@ double geometricEvidence(const RegionAdjacencyGraph& graph, int a, int b) {
   double odds = border.passage.furniture == 2   ? kTwoFurniture
                 : border.passage.furniture == 1 ? kOneFurniture
                                                 : 0.0;
-  if (border.beside <= 0.0)
-    odds += kNotNarrowed * std::clamp((border.passage.evenness - kEven) / (1.0 - kEven), 0.0, 1.0);
+  odds += kNotNarrowed * (1.0 - std::min(1.0, border.beside / border.open)) *
+          std::clamp((border.passage.evenness - kEven) / (1.0 - kEven), 0.0, 1.0);
   odds += (kWithinCorridor * border.within + kAcrossEnd * border.ending) / border.open;
   if (border.beside <= 0.0) return odds;
   const RegionNode &one = graph.node(a), &two = graph.node(b);

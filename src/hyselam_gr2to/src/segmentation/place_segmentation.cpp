@@ -160,7 +160,7 @@ void SegmentationParams::describe(hyselam::ParameterVisitor& visit) {
   using hyselam::Range;
   visit("free_max", free_max, Range::between(0, 99), "", "cells of 0 .. this value are free");
   visit("working_resolution", working_resolution, Range::between(0.01, 0.25), "m",
-        "cells are joined or split to about this size");
+        "finer cells are joined to about this size, coarser ones resampled to it");
   visit.renamed("clutter", "max_clutter_size");
   visit("max_clutter_size", max_clutter_size, Range::between(0.0, 5.0), "m",
         "free-standing obstacles up to this size do not separate places");

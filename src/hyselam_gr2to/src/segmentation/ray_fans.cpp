@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <future>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "alongside.hpp"
 #include "cell_runs.hpp"
 #include "row_marks.hpp"
 
@@ -78,9 +78,8 @@ void clear(const CellRun& run, cv::Mat& free) {
 }  // namespace
 
 void closeRayFans(cv::Mat& free, const cv::Mat& occupied, double resolution) {
-  std::future<cv::Mat> kinds = std::async(std::launch::async, [free, &occupied, resolution] {
-    return sidesOf(free, occupied, resolution);
-  });
+  std::future<cv::Mat> kinds =
+      alongside([free, &occupied, resolution] { return sidesOf(free, occupied, resolution); });
   cv::Mat wide;
   const int narrow = static_cast<int>(std::lround(kNarrow / resolution)) | 1;
   cv::morphologyEx(free, wide, cv::MORPH_OPEN,

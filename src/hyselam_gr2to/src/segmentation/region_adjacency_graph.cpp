@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <functional>
-#include <future>
 #include <opencv2/imgproc.hpp>
 
+#include "alongside.hpp"
 #include "hyselam_common/pose2.hpp"
 #include "row_marks.hpp"
 
@@ -103,21 +102,24 @@ class Probe {
   cv::Point from_;
 };
 
-double evennessOf(cv::Point at, const cv::Mat& clearance, const cv::Mat& labels, int a, int b,
-                  double resolution) {
-  const int reach = static_cast<int>(kBeforePassage / resolution);
-  const cv::Rect box = cv::Rect(at.x - reach, at.y - reach, 2 * reach + 1, 2 * reach + 1) &
-                       cv::Rect({0, 0}, clearance.size());
+/// The clearance of a passage by the largest near it in either basin, the lower of the two.
+double evennessOf(const Passage& passage, double own, const cv::Mat& clearance,
+                  const cv::Mat& labels, int a, int b, double resolution) {
+  const int reach = static_cast<int>(std::lround(kBeforePassage / resolution));
+  const cv::Point at = passage.at;
   float one = 0.0f, two = 0.0f;
-  for (int y = box.y; y < box.y + box.height; ++y) {
+  for (int y = std::max(0, at.y - reach); y <= std::min(labels.rows - 1, at.y + reach); ++y) {
     const int* label = labels.ptr<int>(y);
     const float* height = clearance.ptr<float>(y);
-    for (int x = box.x; x < box.x + box.width; ++x) {  // without branches
+    const int up = y - at.y;
+    const int side = static_cast<int>(std::sqrt(static_cast<double>(reach * reach - up * up)));
+    const int end = std::min(labels.cols - 1, at.x + side);
+    for (int x = std::max(0, at.x - side); x <= end; ++x) {  // without branches
       one = std::max(one, label[x] == a ? height[x] : 0.0f);
       two = std::max(two, label[x] == b ? height[x] : 0.0f);
     }
   }
-  return clearance.at<float>(at) / std::max(1.0f, std::min(one, two));
+  return own / (std::max(1.0f, std::min(one, two)) * resolution);
 }
 
 void measurePassage(const cv::Mat& clearance, const cv::Mat& furniture, double resolution,
@@ -158,9 +160,9 @@ RegionAdjacencyGraph::RegionAdjacencyGraph(const cv::Mat& clearance, const Basin
       merged_into_(static_cast<std::size_t>(basins.count) + 1) {
   CV_Assert(basins.labels.size() == clearance.size() && basins.labels.isContinuous());
   for (std::size_t i = 0; i < merged_into_.size(); ++i) merged_into_[i] = static_cast<int>(i);
-  std::future<cv::Mat> reach =
-      std::async(std::launch::async, reachIntoWalls, std::cref(basins.labels),
-                 static_cast<int>(std::lround(kThinWall / resolution)));
+  std::future<cv::Mat> reach = alongside([&labels = basins.labels, resolution] {
+    return reachIntoWalls(labels, static_cast<int>(std::lround(kThinWall / resolution)));
+  });
   measureNodes(clearance, basins.labels);
   measureCorridors(context.corridors, basins.labels);
   measureBorders(clearance, basins.labels, reach.get(), context.corridors);
@@ -170,7 +172,8 @@ RegionAdjacencyGraph::RegionAdjacencyGraph(const cv::Mat& clearance, const Basin
       if (b < a || border.open <= 0.0) continue;
       Passage& passage = border.passage;
       measurePassage(clearance, context.furniture, resolution, border.clearance, passage);
-      passage.evenness = evennessOf(passage.at, clearance, basins.labels, a, b, resolution);
+      passage.evenness =
+          evennessOf(passage, border.clearance, clearance, basins.labels, a, b, resolution);
     }
 }
 

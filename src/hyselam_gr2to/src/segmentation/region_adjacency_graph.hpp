@@ -19,8 +19,8 @@ struct Passage {
   double weaker_wall = 0;  ///< share of solid cells along the chord's line behind its two ends
   double stronger_wall = 0;
   int furniture = 0;  ///< how many of its ends are furniture
-  /// Its clearance by the largest one within 1.5 m in either basin, the lower of the two: near 1
-  /// where nothing narrows the way, as across a corridor that is bent.
+  /// The border's clearance by the largest one within 1.5 m in either of the two first basins, the
+  /// lower of these: near 1 where nothing narrows the way, as across a corridor that is bent.
   double evenness = 0.0;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <opencv2/imgproc.hpp>
 
 #include "hyselam_common/pose2.hpp"
@@ -83,6 +84,7 @@ struct TurnedMap {
 
 /// CV_16U, the free cells of a column in all rows before one.
 cv::Mat freeBelow(const cv::Mat& cells) {
+  CV_Assert(cells.rows <= std::numeric_limits<std::uint16_t>::max());
   cv::Mat below(cells.rows + 1, cells.cols, CV_16U);
   below.row(0).setTo(0);
   for (int y = 0; y < cells.rows; ++y) {
@@ -259,14 +261,6 @@ void findAlongRows(const TurnedMap& map, double resolution,
 
 }  // namespace
 
-StraightCorridor::StraightCorridor(cv::Point2d from, cv::Point2d to, double half, double log_odds)
-    : start(from),
-      end(to),
-      half_width(half),
-      odds(log_odds),
-      length_(std::hypot((to - from).x, (to - from).y)),
-      along_((to - from) / length_) {}
-
 std::pair<int, int> StraightCorridor::columns(int row, double beyond, int width) const {
   double first = 0.0, last = width - 1.0;
   // Of the columns those with low <= slope x + offset <= high, and one more to either side.
@@ -279,9 +273,9 @@ std::pair<int, int> StraightCorridor::columns(int row, double beyond, int width)
     first = std::max(first, a - 1.0);
     last = std::min(last, b + 1.0);
   };
-  const double up = row - start.y;
-  clip(-along_.y, along_.x * up + along_.y * start.x, -half_width, half_width);
-  clip(along_.x, along_.y * up - along_.x * start.x, -beyond, length_ + beyond);
+  const double up = row - start_.y;
+  clip(-along_.y, along_.x * up + along_.y * start_.x, -half_width_, half_width_);
+  clip(along_.x, along_.y * up - along_.x * start_.x, -beyond, length_ + beyond);
   if (last < first) return {0, 0};
   return {static_cast<int>(std::ceil(first)), static_cast<int>(std::floor(last)) + 1};
 }
@@ -297,7 +291,7 @@ std::vector<StraightCorridor> findStraightCorridors(const FreeSpace& space,
   findAlongRows(turnAcross(along), space.resolution, corridors);
   std::stable_sort(
       corridors.begin(), corridors.end(),
-      [](const StraightCorridor& a, const StraightCorridor& b) { return a.odds > b.odds; });
+      [](const StraightCorridor& a, const StraightCorridor& b) { return a.odds() > b.odds(); });
   return corridors;
 }
 

@@ -57,9 +57,10 @@ Example prepare(const std::string& name, const std::string& kind, const std::str
                 hyselam::OccupancyGrid grid, const cv::Mat& rooms, double scale,
                 const ExampleOptions& options) {
   grid.geometry.resolution *= scale;
-  const PreparedPlaces p = preparePlaces(grid, options.segmentation, Preparation::kBasinsAlone);
-  if (p.space.joined != 1 || p.space.split != 1.0)
-    throw hyselam::InputError(name, "resolution", "is not near the working resolution");
+  // A basin's cells are looked up in the map of the rooms: neither joined nor resampled.
+  SegmentationParams as_it_is = options.segmentation;
+  as_it_is.working_resolution = grid.geometry.resolution;
+  const PreparedPlaces p = preparePlaces(grid, as_it_is, Preparation::kBasinsAlone);
   double most = 0;
   cv::minMaxLoc(rooms, nullptr, &most);
   Example e{name,
