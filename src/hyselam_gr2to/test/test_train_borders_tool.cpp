@@ -3,7 +3,10 @@
 #include <sys/wait.h>
 
 #include <cstdlib>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
 
+#include "hyselam_common/map_io.hpp"
 #include "hyselam_common/testing/files.hpp"
 #include "hyselam_common/testing/temporary_directory.hpp"
 #include "hyselam_gr2to/segmentation/border_model.hpp"
@@ -29,6 +32,33 @@ TEST(TrainBordersTool, TrainingAgainGivesTheStoredBytes) {
   ASSERT_EQ(0, run("--plans 2 --rounds 2 --trees 4 --out " + trained, log)) << fileBytes(log);
   EXPECT_EQ(fileBytes(stored), fileBytes(trained));
   EXPECT_EQ(4u, BorderModel::load(trained).trees().roots().size());
+}
+
+// Given maps are examples at three scales, where a cell is no longer that of the working
+// resolution.
+TEST(TrainBordersTool, TrainsOnGivenMapsToo) {
+  hyselam::testing::TemporaryDirectory folder;
+  hyselam::GridGeometry g;
+  g.width = 220;
+  g.height = 120;
+  g.resolution = 0.05;
+  hyselam::OccupancyGrid grid(g, hyselam::OccupancyGrid::kUnknown);
+  cv::Mat rooms(g.height, g.width, CV_8U, cv::Scalar(0));
+  for (int y = 10; y < 110; ++y)
+    for (int x = 10; x < 210; ++x) {
+      const bool rim = y < 14 || y >= 106 || x < 14 || x >= 206;
+      const bool wall = rim || (x >= 100 && x < 104 && (y < 50 || y >= 70));
+      grid.at({x, y}) = wall ? hyselam::OccupancyGrid::kOccupied : hyselam::OccupancyGrid::kFree;
+      if (!wall) rooms.at<std::uint8_t>(g.height - 1 - y, x) = x < 102 ? 1 : 2;
+    }
+  hyselam::saveMap(folder / "map.yaml", grid);
+  cv::imwrite(folder / "rooms.png", rooms);
+  std::ofstream(folder / "index.csv") << "name,map,yaml,gt,resolution,kind,building,gt_rooms\n"
+                                      << "two,map.pgm,map.yaml,rooms.png,0.05,unfurnished,two,2\n";
+  const std::string trained = folder / "border_trees.txt", log = folder / "log";
+  ASSERT_EQ(0, run((folder / "") + " --plans 1 --rounds 1 --trees 2 --out " + trained, log))
+      << fileBytes(log);
+  EXPECT_NE(std::string::npos, fileBytes(trained).find("1 maps")) << fileBytes(trained);
 }
 
 TEST(TrainBordersTool, NamesWhatCannotBeUsed) {

@@ -178,3 +178,21 @@ TEST(Overview, MapsOfAnySizeAndWithoutPlaces) {
     EXPECT_LT(picture.total(), 30e6);
   }
 }
+
+TEST_F(Gr2ToTool, SaysWhatAPersonMayWonderAt) {
+  const auto said = [&](const OccupancyGrid& grid) {
+    hyselam::saveMap(folder_ / "map.yaml", grid);
+    EXPECT_EQ(0, run((folder_ / "map.yaml") + " --out " + (folder_ / "out")));
+    return fileBytes(folder_ / "stderr");
+  };
+  OccupancyGrid grid = twoRooms();
+  EXPECT_EQ("", said(grid));
+  grid.geometry.resolution = 5.0;
+  EXPECT_NE(std::string::npos, said(grid).find("is the resolution of 5 m right?"));
+  grid = twoRooms();
+  for (std::int8_t& cell : grid.cells)
+    if (cell < 0) cell = OccupancyGrid::kOccupied;
+  EXPECT_NE(std::string::npos, said(grid).find("no unknown cells"));
+  for (std::int8_t& cell : grid.cells) cell = OccupancyGrid::kUnknown;
+  EXPECT_NE(std::string::npos, said(grid).find("no cell of the map is free"));
+}

@@ -163,7 +163,7 @@ void SegmentationParams::describe(hyselam::ParameterVisitor& visit) {
         "finer cells are joined to about this size, coarser ones resampled to it");
   visit.renamed("clutter", "max_clutter_size");
   visit("max_clutter_size", max_clutter_size, Range::between(0.0, 5.0), "m",
-        "free-standing obstacles up to this size do not separate places");
+        "free-standing obstacles whose box has a diagonal up to this do not separate places");
   visit.renamed("smallest_place", "min_place_area");
   visit("min_place_area", min_place_area, Range::between(0.0, 100.0), "m^2",
         "smaller places join a neighbor or are left out");

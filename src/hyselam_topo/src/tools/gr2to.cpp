@@ -1,6 +1,7 @@
 // gr2to MAP --out DIR: places, doors and walls of a grid map or an OctoMap.
 #include "hyselam_gr2to/gr2to.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -50,8 +51,9 @@ void addOptions(CLI::App& app, Options& o) {
   app.add_option("--mode", o.mode, "default: merged and without clutter; thesis: as in the thesis")
       ->check(CLI::IsMember({"default", "thesis"}));
   app.add_option("--free-max", o.gr2to.segmentation.free_max, "cells of 0 .. this value are free");
-  app.add_option("--clutter", o.gr2to.segmentation.max_clutter_size,
-                 "free-standing obstacles up to this size do not separate places [m]");
+  app.add_option(
+      "--clutter", o.gr2to.segmentation.max_clutter_size,
+      "free-standing obstacles whose box has a diagonal up to this do not separate places [m]");
   app.add_option("--smallest-place", o.gr2to.segmentation.min_place_area,
                  "smaller places join a neighbor or are left out [m^2]");
   app.add_option("--border-model", o.border_model,
@@ -128,6 +130,33 @@ void saveMapFiles(const Options& o, const Gr2ToResult& result) {
   saveDoors(o.out + "/doors.csv", result.map);
 }
 
+/// What a person should know who wonders at the result.
+void remark(const hyselam::OccupancyGrid& grid, const Gr2ToParams& params,
+            const Gr2ToResult& result) {
+  constexpr double kTiny = 2.0, kHuge = 500.0;  // [m] of the longer side of what is free
+  const hyselam::GridGeometry& g = grid.geometry;
+  hyselam::Cell low{g.width, g.height}, high{-1, -1};
+  bool unknown = false;
+  for (int y = 0; y < g.height; ++y)
+    for (int x = 0; x < g.width; ++x) {
+      const int value = grid.at({x, y});
+      unknown = unknown || value < 0;
+      if (value < 0 || value > params.segmentation.free_max) continue;
+      low = {std::min(low.x, x), std::min(low.y, y)};
+      high = {std::max(high.x, x), std::max(high.y, y)};
+    }
+  if (high.x < 0) {
+    std::cerr << "gr2to: no cell of the map is free, so it has no places\n";
+    return;
+  }
+  const double side = (std::max(high.x - low.x, high.y - low.y) + 1) * g.resolution;
+  if (side < kTiny || side > kHuge)
+    std::cerr << "gr2to: what is free is " << side << " m long: is the resolution of "
+              << g.resolution << " m right?\n";
+  if (!unknown && !result.map.places.empty())
+    std::cerr << "gr2to: the map has no unknown cells: what is not free may be wall or unseen\n";
+}
+
 nlohmann::json summaryOf(const Options& o, const hyselam::OccupancyGrid& grid,
                          const Gr2ToResult& result) {
   std::size_t doors = 0, open_borders = 0, walls = 0, corridors = 0;
@@ -195,6 +224,7 @@ nlohmann::json run(Options& o) {
     renumberLabels(*result.map.grid, &result.labels);
   }
   progress.update(2);
+  remark(grid, o.gr2to, result);
   saveMapFiles(o, result);
   progress.update(3);
   saveImage(o.out + "/overview.png", drawOverview(grid, result, o.picture));
