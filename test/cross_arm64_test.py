@@ -1,8 +1,6 @@
 #!/usr/bin/env python3
 """scripts/cross_arm64 without a network and without another system: what is unpacked of a package, which gtests are the cores', how files are
 compared, its section of the page."""
-import importlib.machinery
-import importlib.util
 import json
 import os
 import pathlib
@@ -16,17 +14,12 @@ import unittest
 import rostest
 
 SCRIPT = pathlib.Path(os.path.realpath(__file__)).parent.parent / "scripts/cross_arm64"
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(SCRIPT.parent))
 
+import script_module
 
-def loaded():
-    sys.dont_write_bytecode = True
-    loader = importlib.machinery.SourceFileLoader("cross_arm64_script", str(SCRIPT))
-    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("cross_arm64_script", loader))
-    loader.exec_module(module)
-    return module
-
-
-cross = loaded()
+cross = script_module.load(SCRIPT)
 RECORD = {"system": "debian-12", "cross": "arm64", "compiler_asked": None, "compiler": "aarch64-linux-gnu-g++ (Debian 12.2.0-14) 12.2.0", "emulator": "7.2",
           "date": "2026-01-02", "commit": "0123abcd", "complete": True, "build_passed": False, "build_minutes": 9.6, "build_continued": False,
           "built": {"objects": 20, "libraries": 3}, "gtests": {"of": 5, "with_ros": 2, "chosen": 3, "not_built": ["b_test"]}, "test_minutes": 4.4,

@@ -1,7 +1,5 @@
 #!/usr/bin/env python3
 """Packages of Debian without making one: what the packages say of themselves, the unit of systemd, the reading of a unit, an apt repository."""
-import importlib.machinery
-import importlib.util
 import os
 import pathlib
 import shutil
@@ -19,13 +17,7 @@ CONF = ROOT / "src/hyselam_bringup/systemd/example.conf"
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(ROOT / "scripts"))
 import deb_control as texts  # noqa: E402  pylint: disable=wrong-import-position
-
-
-def loaded(script):
-    loader = importlib.machinery.SourceFileLoader(f"{script}_script", str(ROOT / "scripts" / script))
-    module = importlib.util.module_from_spec(importlib.util.spec_from_loader(f"{script}_script", loader))
-    loader.exec_module(module)
-    return module
+import script_module  # noqa: E402  pylint: disable=wrong-import-position
 
 
 # A system with the packages of ROS as Debian 12 has them.
@@ -143,7 +135,7 @@ class PackagesTest(unittest.TestCase):
         self.assertEqual(texts.overrides("ros-x", []), "")
 
     def test_the_unit_runs_what_its_file_says(self):
-        script = loaded("check_deb")
+        script = script_module.load(ROOT / "scripts/check_deb")
         variables, command = script.of_unit(UNIT.read_text(), CONF.read_text(), "example")
         self.assertEqual(command, ["/usr/bin/roslaunch", "hyselam_bringup", "hyselam.launch", "scan:=scan", "work_dir:=/var/lib/hyselam/example"])
         self.assertEqual(variables["ROS_HOME"], "/var/lib/hyselam/example")
@@ -151,7 +143,7 @@ class PackagesTest(unittest.TestCase):
         self.assertEqual(command, ["/usr/bin/roslaunch", "--wait", "hyselam_bringup", "slam.launch"])
 
     def test_what_apt_downloads_is_read(self):
-        script = loaded("check_deb")
+        script = script_module.load(ROOT / "scripts/check_deb")
         text = ("0 upgraded, 533 newly installed, 0 to remove and 0 not upgraded.\nNeed to get {}272 MB of archives.\n"
                 "After this operation, 1326 MB of additional disk space will be used.\n")
         for had in ("", "0 B/"):
@@ -159,7 +151,7 @@ class PackagesTest(unittest.TestCase):
         self.assertIsNone(script.downloads("0 upgraded, 0 newly installed, 0 to remove and 0 not upgraded.\n"))
 
     def test_what_runs_in_the_system_is_shell(self):
-        script = loaded("check_deb")
+        script = script_module.load(ROOT / "scripts/check_deb")
         variables, command = script.of_unit(UNIT.read_text(), CONF.read_text(), "example")
         for text in (script.BARE, script.UNOWNED, script.DEMO, script.HELP, script.BOOT, script.BOOTED, script.ACTS, script.unit_step(variables, command)):
             run = subprocess.run(["bash", "-n"], input=text, text=True, capture_output=True, check=False)

@@ -1,8 +1,6 @@
 #!/usr/bin/env python3
 """scripts/platform without a network and without another system: its arguments, what it reads in logs, the page of its records, which folders
 it leaves alone."""
-import importlib.machinery
-import importlib.util
 import json
 import os
 import pathlib
@@ -16,17 +14,12 @@ from unittest import mock
 import rostest
 
 SCRIPT = pathlib.Path(os.path.realpath(__file__)).parent.parent / "scripts/platform"
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(SCRIPT.parent))
 
+import script_module
 
-def loaded():
-    sys.dont_write_bytecode = True
-    loader = importlib.machinery.SourceFileLoader("platform_script", str(SCRIPT))
-    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("platform_script", loader))
-    loader.exec_module(module)
-    return module
-
-
-platform = loaded()
+platform = script_module.load(SCRIPT)
 RECORD = {"system": "debian-13", "compiler_asked": None, "compiler": "c++ (Debian 14.2.0-19) 14.2.0", "date": "2026-01-02", "commit": "0123abcd",
           "complete": True, "build_passed": True, "build_minutes": 41.6, "build_continued": False, "test_minutes": 12.2,
           "tests": {"passed": 7, "failed": 0, "skipped": 2}, "failures": [], "left_out": [], "versions": {"PCL": "1.15.0"}}

@@ -377,19 +377,19 @@ TEST(RobotMaps, ARightAngleChangesNothing) {
   };
   const std::vector<double> lengths = figures(grid);
   ASSERT_FALSE(lengths.empty());
-  const cv::Mat labels = segmentPlaces(grid).labels;
+  const int places = segmentPlaces(grid).places;
   for (int quarters = 1; quarters < 4; ++quarters) {
     const OccupancyGrid other = turned(grid, quarters);
     const std::vector<double> others = figures(other);
     ASSERT_EQ(lengths.size(), others.size()) << quarters;
     for (std::size_t i = 0; i < lengths.size(); ++i) EXPECT_NEAR(lengths[i], others[i], 1.5);
-    EXPECT_EQ(segmentPlaces(grid).places, segmentPlaces(other).places) << quarters;
+    EXPECT_EQ(places, segmentPlaces(other).places) << quarters;
   }
 }
 
 TEST(RobotMaps, CoarserCellsGiveTheSamePlaces) {
   const OccupancyGrid grid = wing();
-  const cv::Mat labels = segmentPlaces(grid).labels;
+  const PlaceSegmentation fine_places = segmentPlaces(grid);
   for (const double factor : {1.1, 1.25, 1.4, 2.0}) {
     hyselam::GridGeometry g = grid.geometry;
     g.resolution *= factor;
@@ -400,12 +400,12 @@ TEST(RobotMaps, CoarserCellsGiveTheSamePlaces) {
     for (int y = 0; y < g.height; ++y)
       for (int x = 0; x < g.width; ++x) coarse.at({x, y}) = grid.at({fine(x), fine(y)});
     const PlaceSegmentation places = segmentPlaces(coarse);
-    EXPECT_EQ(segmentPlaces(grid).places, places.places) << factor;
+    EXPECT_EQ(fine_places.places, places.places) << factor;
     int same = 0, both = 0, on_walls = 0;
     std::map<int, std::map<int, int>> shared;
     for (int y = 0; y < g.height; ++y)
       for (int x = 0; x < g.width; ++x) {
-        const int a = labels.at<std::uint16_t>(fine(y), fine(x));
+        const int a = fine_places.labels.at<std::uint16_t>(fine(y), fine(x));
         const int b = places.labels.at<std::uint16_t>(y, x);
         if (a != 0 && b != 0) ++shared[b][a], ++both;
         if (b != 0 && coarse.at({x, y}) == OccupancyGrid::kOccupied) ++on_walls;

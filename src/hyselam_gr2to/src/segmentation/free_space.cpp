@@ -67,10 +67,12 @@ cv::Mat resampled(const cv::Mat& mask, double factor) {
   const auto source = [factor](int cell, int cells) {
     return std::min(cells - 1, static_cast<int>(std::floor((cell + 0.5) / factor)));
   };
+  std::vector<int> columns(static_cast<std::size_t>(out.cols));
+  for (int x = 0; x < out.cols; ++x) columns[static_cast<std::size_t>(x)] = source(x, mask.cols);
   for (int y = 0; y < out.rows; ++y) {
     const std::uint8_t* from = mask.ptr<std::uint8_t>(source(y, mask.rows));
     std::uint8_t* to = out.ptr<std::uint8_t>(y);
-    for (int x = 0; x < out.cols; ++x) to[x] = from[source(x, mask.cols)];
+    for (int x = 0; x < out.cols; ++x) to[x] = from[columns[static_cast<std::size_t>(x)]];
   }
   return out;
 }

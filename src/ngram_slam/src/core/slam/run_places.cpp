@@ -50,7 +50,7 @@ RunPlace SlamEngine::runPlace() const {
 
 bool SlamEngine::knowsChanges() const {
   if (session_ == 0) return true;
-  // A run may be tied to another one of this session, which is apart.
+  // A run may be tied to another one since the start, and both be apart from the stored map.
   return currentRun() >= session_ && runPlace() == RunPlace::kTied &&
          connections_.mapOf(currentRun()) < session_;
 }
