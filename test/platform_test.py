@@ -168,6 +168,19 @@ class PlatformTest(unittest.TestCase):
         command = next(command for step, command, *_ in FakeSystem.steps if step == "packages")
         self.assertLess(command.index("download libcli11-dev"), command.index("make deps"))
 
+    def test_what_a_job_of_the_build_needs_is_told(self):
+        _, record, page = self.run_of("--jobs", "1", logs={"build": "[1/1] Linking\nlargest process: 1234 MB\n"})
+        self.assertEqual((record["build_jobs"], record["build_largest_mb"]), (1, 1234))
+        self.assertIn("- built with 1 job at a time, each of at most 1234 MB\n", page)
+        self.assertNotIn("at a time", self.run_of("--ccache", logs={"build": "largest process: 1234 MB\n"})[2])
+        self.assertIsNone(self.run_of()[1]["build_largest_mb"])
+
+    def test_the_memory_told_is_that_of_the_largest_process(self):
+        command = [sys.executable, "-c", platform.MEASURED, sys.executable, "-c", "x = b'1' * 300_000_000; raise SystemExit(3)"]
+        run = subprocess.run(command, capture_output=True, text=True, check=False)
+        self.assertEqual(run.returncode, 3)
+        self.assertTrue(290 < platform.largest_of(run.stdout) < 400, run.stdout)
+
     def test_failures_are_written_down_and_are_the_exit_status(self):
         status, record, page = self.run_of(statuses={"test": 1}, logs={"test": "FAILED   p: A.b: no\n3 passed, 1 failed\n"})
         self.assertEqual((status, record["complete"], record["failures"]), (1, True, ["p: A.b: no"]))
