@@ -10,6 +10,7 @@
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/binary_io.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/folder.hpp"
 #include "hyselam_common/testing/files.hpp"
 #include "hyselam_common/trajectory_io.hpp"
 
@@ -31,6 +32,18 @@ std::string gzipped(const std::string& text, const TemporaryDirectory& directory
 
 bool mentions(const std::string& message, const std::string& part) {
   return message.find(part) != std::string::npos;
+}
+
+TEST(Folder, IsMadeWithThoseAboveItUnlessItIsThere) {
+  TemporaryDirectory d;
+  makeFolder(d / "a/b/c");
+  writeFile(d / "a/b/c/kept", "x");
+  makeFolder(d / "a/b/c/");
+  EXPECT_EQ(fileBytes(d / "a/b/c/kept"), "x");
+  for (const std::string& path : {d / "a/b/c/kept", d / "a/b/c/kept/below", std::string()}) {
+    EXPECT_EQ(messageOf<InputError>([&] { makeFolder(path); }),
+              path + ": is not a folder and cannot be made one");
+  }
 }
 
 TEST(AtomicFile, ReplacesAFileAndLeavesNothingElse) {

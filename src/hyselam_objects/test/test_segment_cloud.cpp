@@ -482,6 +482,30 @@ TEST(SegmentCloudTool, WritesLabelsAndJson) {
   EXPECT_GE(json["seconds"], 0.0);
 }
 
+TEST(SegmentCloudTool, WritesEachObjectForItself) {
+  const TemporaryDirectory directory;
+  const CloudFile file = table({thing("a", kBox, {1.9, 2.8, 0.5}, 0.5, {0.2, 0.1, 0.25}),
+                                thing("b", kBox, {2.1, 3.3, 0.0}, 0.5, {0.1, 0.1, 0.15})});
+  writePcd(directory / "in.pcd", file.cloud, file.labels);
+  ASSERT_EQ(shell((directory / "in.pcd") + " --labels " + (directory / "out.pcd") + " --objects " +
+                      (directory / "new/each"),
+                  directory),
+            0)
+      << fileBytes(directory / "stderr");
+  const CloudFile labelled = readPcd(directory / "out.pcd");
+  for (const std::uint32_t label : {2u, 3u}) {
+    const CloudFile object =
+        readPcd(directory / ("new/each/object_" + std::to_string(label) + ".pcd"));
+    std::vector<Eigen::Vector3f> points;
+    for (std::size_t i = 0; i < labelled.cloud.size(); ++i) {
+      if (labelled.labels[i] == label) points.push_back(labelled.cloud.points[i]);
+    }
+    EXPECT_EQ(object.cloud.points, points);
+    EXPECT_GT(points.size(), 100u);
+  }
+  EXPECT_FALSE(std::filesystem::exists(directory / "new/each/object_4.pcd"));
+}
+
 TEST(SegmentCloudTool, TurnsCloudsOfOneRowWithNegativeDepth) {
   const TemporaryDirectory directory;
   CloudFile row = pile();

@@ -8,6 +8,7 @@
 #include "filmed_tour.hpp"
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/folder.hpp"
 #include "hyselam_common/progress.hpp"
 #include "hyselam_common/tool.hpp"
 #include "hyselam_sim/data.hpp"
@@ -133,10 +134,8 @@ nlohmann::json accuraciesOf(const PlaceModel& model, const std::vector<PlanPlace
 /// learning, odometry is for asking.
 void writeTour(const std::string& folder, const std::string& name, bool true_poses,
                const bench::FilmedTour& tour, const std::vector<PlanPlace>& places) {
-  std::error_code error;
   const std::filesystem::path base(folder);
-  std::filesystem::create_directories(base / name, error);
-  if (error) throw hyselam::InputError(folder, "", "cannot be created: " + error.message());
+  hyselam::makeFolder((base / name).string());
   hyselam::writeFileAtomically((base / (name + ".csv")).string(), [&](std::ostream& out) {
     out << "image_path,place,stamp,x,y,theta,odom_x,odom_y,odom_theta";
     for (std::size_t k = 0; k < tour.frames.front().scan.size(); ++k) out << ",scan_" << k;

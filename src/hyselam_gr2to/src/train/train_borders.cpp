@@ -1,7 +1,6 @@
 // train_borders DATA --out border_trees.txt: learns which neighboring regions of a map are one
 // place, and tells how well that carries over to buildings that were not seen.
 #include <cstdio>
-#include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -10,6 +9,7 @@
 #include "border_training.hpp"
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/folder.hpp"
 #include "hyselam_common/tool.hpp"
 #include "training_examples.hpp"
 
@@ -89,7 +89,7 @@ int train(int argc, char** argv) {
       hyselam::writeFileAtomically(options.out, [&](std::ostream& out) { out << model.toText(); });
     }
     if (!options.left_out.empty()) {
-      std::filesystem::create_directories(options.left_out);
+      hyselam::makeFolder(options.left_out);
       for (auto& [building, trees] : trained.without) {
         const BorderModel model(std::move(trees),
                                 {commandOf(app) + ", without " + building, data.summary,

@@ -1,4 +1,4 @@
-// segment_cloud IN.pcd --labels OUT.pcd: which points of a cloud belong to one object.
+// segment_cloud IN.pcd --labels OUT.pcd [--objects FOLDER]: which points of a cloud belong to one object.
 #include "hyselam_objects/segmentation/segment_cloud.hpp"
 
 #include <algorithm>
@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/folder.hpp"
 #include "hyselam_common/tool.hpp"
 #include "hyselam_objects/pcl/cloud_io.hpp"
 #include "hyselam_objects/pcl/segment_unorganized.hpp"
@@ -77,6 +78,24 @@ std::string remarks(const Outcome& outcome) {
   return out;
 }
 
+/// Writes the points of each object, label by label, as a model that find_model looks for.
+void writeObjects(const std::string& folder, const OrganizedCloud& cloud,
+                  const CloudSegmentation& found) {
+  hyselam::makeFolder(folder);
+  for (std::uint32_t label = 2; label < found.objects + 2; ++label) {
+    OrganizedCloud points;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      if (found.labels[i] != label) continue;
+      points.points.push_back(cloud.points[i]);
+      if (!cloud.colors.empty()) points.colors.push_back(cloud.colors[i]);
+    }
+    points.width = static_cast<int>(points.size());
+    points.height = 1;
+    writePcd(folder + "/object_" + std::to_string(label) + ".pcd", points,
+             std::vector<std::uint32_t>(points.size(), label));
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -85,7 +104,7 @@ int main(int argc, char** argv) {
       "seen from one point are taken as images (without rows and columns they get them by "
       "projection); others are split where there is a gap.",
       "segment_cloud");
-  std::string in, out;
+  std::string in, out, objects;
   std::vector<double> up, camera;
   SegmentParams params;
   UnorganizedParams loose;
@@ -95,6 +114,8 @@ int main(int argc, char** argv) {
   app.add_option("--labels", out,
                  "PCD file to write, with a label per point: 0 invalid, 1 support, 2 ... objects")
       ->required();
+  app.add_option("--objects", objects,
+                 "folder to write each object into, object_LABEL.pcd: a model for find_model");
   app.add_option("--downsampling,--reduce", params.downsampling, "use every n-th row and column");
   app.add_option("--max-height,--tallest", params.max_object_height,
                  "highest object above the support [m]");
@@ -125,6 +146,7 @@ int main(int argc, char** argv) {
     const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
     const CloudSegmentation& found = outcome.found;
     writePcd(out, file.cloud, found.labels);
+    if (!objects.empty()) writeObjects(objects, file.cloud, found);
     std::cout << found.objects << " objects" << remarks(outcome) << " in " << 1e3 * seconds
               << " ms -> " << out << "\n";
     return nlohmann::json{{"objects", found.objects},

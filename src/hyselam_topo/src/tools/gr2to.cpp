@@ -12,6 +12,7 @@
 
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/folder.hpp"
 #include "hyselam_common/map_io.hpp"
 #include "hyselam_common/progress.hpp"
 #include "hyselam_common/tool.hpp"
@@ -109,16 +110,8 @@ void saveDoors(const std::string& path, const AugmentedTopologicalMap& map) {
   });
 }
 
-void makeFolder(const std::string& path) {
-  std::error_code error;
-  fs::create_directories(path, error);
-  if (error || !fs::is_directory(path, error)) {
-    throw hyselam::InputError(path, "", "is not a folder and cannot be made one");
-  }
-}
-
 void saveMapFiles(const Options& o, const Gr2ToResult& result) {
-  makeFolder(o.out);
+  hyselam::makeFolder(o.out);
   saveXml(o.out + "/topo.xml", result.map);
   if (o.graphml) {
     hyselam::writeFileAtomically(o.out + "/topo.graphml",

@@ -11,6 +11,7 @@
 
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/folder.hpp"
 #include "hyselam_common/map_io.hpp"
 #include "hyselam_common/progress.hpp"
 #include "hyselam_common/tool.hpp"
@@ -215,9 +216,7 @@ json run(const Options& o) {
   params.validate();
   emptyMap(o.resolution);  // refused before the work, not after it
   Loaded loaded = load(o, params);
-  std::error_code error;
-  std::filesystem::create_directories(o.out, error);
-  if (error) throw hyselam::InputError(o.out, "", "cannot be made: " + error.message());
+  hyselam::makeFolder(o.out);
 
   const double begin = cpuSeconds();
   std::unique_ptr<hyselam::Progress> progress;

@@ -10,6 +10,7 @@
 #include "degrade.hpp"
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/folder.hpp"
 #include "hyselam_common/map_io.hpp"
 #include "hyselam_common/progress.hpp"
 #include "hyselam_common/report_issues.hpp"
@@ -472,13 +473,6 @@ SlamParams paramsOf(const Options& o, LoopClosureMode loops) {
   return params;
 }
 
-/// @throws hyselam::InputError
-void makeFolder(const std::string& path) {
-  std::error_code error;
-  std::filesystem::create_directories(path, error);
-  if (error) throw hyselam::InputError(path, "", "cannot be made: " + error.message());
-}
-
 /// @throws hyselam::InputError if there is no map in it.
 void checkMapped(const Run& run, const std::string& name, std::size_t scans) {
   if (!run.engine->keyframes().empty()) return;
@@ -521,7 +515,7 @@ nlohmann::json run(const Options& o) {
   degrade(o.degradation, &log);
   if (o.noise > 0.0) addOdometryNoise(o.noise, o.seed, &log.odometry);
   const std::vector<hyselam::StampedPose2> reference = referenceOf(o.reference, log);
-  makeFolder(o.out);
+  hyselam::makeFolder(o.out);
   const nlohmann::json log_issues = hyselam::reportIssues(name, issues);
 
   Run main_run = runSlam(log, makeEngine(o, params), "SLAM of " + name);

@@ -1,8 +1,8 @@
 // train_signatures: learns the signatures of places from recorded runs and simulated buildings.
-#include <filesystem>
 #include <iostream>
 
 #include "hyselam_common/checksum.hpp"
+#include "hyselam_common/folder.hpp"
 #include "hyselam_common/numbers.hpp"
 #include "hyselam_common/rng.hpp"
 #include "hyselam_common/tool.hpp"
@@ -37,12 +37,7 @@ nlohmann::json train(const Options& o) {
     throw hyselam::ParameterError("--out-without-each", o.logs.logs.size(), "two logs or more");
   }
   if (!o.out_without_each.empty()) {
-    // Before the work is done.
-    std::error_code error;
-    std::filesystem::create_directories(o.out_without_each, error);
-    if (error) {
-      throw hyselam::InputError(o.out_without_each, "", "cannot be made: " + error.message());
-    }
+    hyselam::makeFolder(o.out_without_each);
   }
   std::vector<std::vector<SignatureExample>> ways;
   SignatureOrigin origin;

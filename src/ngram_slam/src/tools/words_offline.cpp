@@ -1,10 +1,9 @@
 // words_offline: recorded runs as words, and where the robot was before, without a master.
-#include <filesystem>
 #include <iomanip>
 #include <iostream>
 
 #include "hyselam_common/atomic_file.hpp"
-#include "hyselam_common/errors.hpp"
+#include "hyselam_common/folder.hpp"
 #include "ngram_slam/matching/match_place.hpp"
 #include "ngram_slam/semantics/semantic_regions_io.hpp"
 #include "recognition_options.hpp"
@@ -46,9 +45,7 @@ void writeMatches(const std::string& path, const NgramRecognizer& r,
 
 nlohmann::json run(const Options& o) {
   NgramRecognizer r(o.recognition.params());
-  std::error_code error;
-  std::filesystem::create_directories(o.out, error);
-  if (error) throw hyselam::InputError(o.out, "", "cannot be made: " + error.message());
+  hyselam::makeFolder(o.out);
   std::vector<PlacedMatch> matches;
   feed(o.recognition, r, [&](const NgramRecognizerUpdate& u) {
     if (u.requantised) matches.clear();

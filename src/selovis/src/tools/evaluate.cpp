@@ -8,6 +8,7 @@
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/confusion_csv.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/folder.hpp"
 #include "hyselam_common/progress.hpp"
 #include "hyselam_common/tool.hpp"
 #include "selovis/learning/error_source.hpp"
@@ -222,9 +223,7 @@ void writePredictions(const std::string& path, const Tours& tours, const std::ve
 void writePlotTables(const std::string& folder, const Tours& tours, const Evaluation& evaluation,
                      const PlaceModel& model, const Confusion& confusion,
                      const std::vector<std::string>& names) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw hyselam::InputError(folder, "", "cannot be created: " + error.message());
+  hyselam::makeFolder(folder);
   const auto file = [&](const char* name) {
     return (std::filesystem::path(folder) / name).string();
   };

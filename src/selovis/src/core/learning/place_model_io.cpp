@@ -8,6 +8,7 @@
 #include "hyselam_common/binary_io.hpp"
 #include "hyselam_common/checksum.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/folder.hpp"
 #include "hyselam_common/format_version.hpp"
 #include "hyselam_common/json_integer.hpp"
 #include "selovis/learning/error_source.hpp"
@@ -288,9 +289,7 @@ void savePlaceModel(const PlaceModel& model, const std::string& directory) {
   if (model.classifier.kernel != SvmKernel::kExemplar && model.svm.empty()) {
     throw InputError(directory, "", "the model has signatures, but has not been trained with them");
   }
-  std::error_code error;
-  std::filesystem::create_directories(directory, error);
-  if (error) throw InputError(directory, "", "cannot be created: " + error.message());
+  hyselam::makeFolder(directory);
   json j;
   j["format"] = kFormat;
   j["descriptor"] = model.descriptor;
