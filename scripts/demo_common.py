@@ -58,7 +58,7 @@ def common_name(name):
 
 
 def start():
-    """Where the morning's route begins in the plan: the origin of the SLAM's map. Heading 0."""
+    """Where the first robot begins in the plan: the origin of the map. Heading 0."""
     at = yaml.safe_load(ROUTE.read_text())["start"]["at"]
     return next(p["at"] for p in yaml.safe_load(PLAN.read_text())["places"] if p["name"] == at)
 
@@ -70,7 +70,7 @@ class PlaceGrid:
         import numpy as np
         from PIL import Image
         self.labels = np.array(Image.open(out / "places/labels.png")).astype(int)
-        self.info = yaml.safe_load((out / "slam/map.yaml").read_text())
+        self.info = yaml.safe_load((out / "building/map.yaml").read_text())
 
     def cell(self, x, y):
         """Row (downwards) and column of a point of the map [m]."""
@@ -98,6 +98,28 @@ def truth(out):
         if found:
             names[found] = common_name(place["name"])
     return names
+
+
+def true_poses(bag):
+    """Of a simulated run, in the frame of the map: lists of times [s], x, y [m]."""
+    import rosbag
+    x0, y0 = start()
+    with rosbag.Bag(str(bag)) as recorded:
+        rows = [(m.header.stamp.to_sec(), m.pose.pose.position.x - x0, m.pose.pose.position.y - y0)
+                for _, m, _ in recorded.read_messages(["/ground_truth"])]
+    return [list(column) for column in zip(*rows)]
+
+
+def trajectory(path):
+    """Of a TUM file: rows of time [s], x, y [m]."""
+    lines = pathlib.Path(path).read_text().splitlines()
+    return [tuple(float(v) for v in line.split()[:3]) for line in lines if line and not line.startswith("#")]
+
+
+def interpolated(true, times):
+    """True x and y at these times [m]."""
+    import numpy as np
+    return np.interp(times, true[0], true[1]), np.interp(times, true[0], true[2])
 
 
 def inside(polygon, x, y):
