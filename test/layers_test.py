@@ -49,6 +49,14 @@ class LayersTest(unittest.TestCase):
         self.assertEqual(err, "error: HYSELAM_LOCALIZATION=OFF leaves out fsd_localization, which ngram_slam needs: give -DHYSELAM_SLAM=OFF, too, or keep both\n")
         self.assertIn("fsd_localization", self.left_out("LOCALIZATION", "SLAM"))
 
+    def test_options_that_are_none_are_refused(self):
+        for option, why in (("-DHYSELAM_VISON=OFF", "there is no HYSELAM_VISON: HYSELAM_VISION?"), ("-DHYSELAM_WEB=OF", "ON or OFF is wanted"),
+                            ("-DHYSELAM_EVERYTHING=OFF", "there is no HYSELAM_EVERYTHING; layers are LOCALIZATION, SLAM, "), ("-DHYSELAM_WEB", "ON or OFF is wanted")):
+            code, out, err = run(ROOT / "scripts/layers", "-DCMAKE_BUILD_TYPE=Debug", option)
+            self.assertEqual((code, out), (2, ""), option)
+            self.assertIn(f"error: {option}: {why}", err)
+        self.assertEqual(run(ROOT / "scripts/layers", "-DHYSELAM_WEB:BOOL=off")[1], "hyselam_web\n")
+
     def test_the_build_refuses_so_before_it_configures(self):
         with tempfile.TemporaryDirectory() as folder:
             done = subprocess.run([str(ROOT / "scripts/build")], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False,

@@ -1,4 +1,5 @@
-// segment_cloud IN.pcd --labels OUT.pcd [--objects FOLDER]: which points of a cloud belong to one object.
+// segment_cloud IN.pcd --labels OUT.pcd [--objects FOLDER]: which points of a cloud belong to one
+// object.
 #include "hyselam_objects/segmentation/segment_cloud.hpp"
 
 #include <algorithm>
