@@ -68,6 +68,14 @@ class VersionsTest(unittest.TestCase):
             file.write("# a word more\n")
         self.test_the_copy_is_good()
 
+    def test_a_new_message_has_to_be_recorded_for_a_release_only(self):
+        (self.root / "src/hyselam_msgs/msg/OneMore.msg").write_text("uint32 more\n")
+        self.test_the_copy_is_good()
+        git = ["git", "-C", str(self.root), "-c", "user.name=a", "-c", "user.email=a@b"]
+        for command in (["init", "--quiet"], ["commit", "--quiet", "--allow-empty", "-m", "x"], ["tag", "v1.0.0"]):
+            subprocess.run([*git, *command], check=True)
+        self.assertIn("hyselam_msgs/OneMore is new in a release and not in src/hyselam_msgs/released.md5", self.found())
+
     def test_a_removed_message(self):
         (self.root / "src/hyselam_msgs/srv/WhereAmI.srv").unlink()
         self.assertIn("hyselam_msgs/WhereAmI is missing", self.found())
