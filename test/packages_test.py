@@ -124,6 +124,16 @@ class PackagesTest(unittest.TestCase):
                 described += 1
         self.assertGreater(described, 5)
 
+    def test_libraries_do_not_tell_where_they_were_built(self):
+        script = script_module.load(ROOT / "scripts/deb")
+        allowed = {pathlib.Path(p).name for p in script.SOURCES_LAST}
+        libraries = sorted((script.DEVEL / "lib").glob("lib*.so"))
+        if not libraries:
+            self.skipTest("the build is not in devel/")
+        # The folder of libraries is in all of them here, and not in those that are installed.
+        told = [p.name for p in libraries if f"{ROOT}/src/".encode() in p.read_bytes()]
+        self.assertEqual(set(told) - allowed, set())
+
     def test_maintainer_scripts_are_shell(self):
         scripts = texts.maintainer_scripts("ros-x", True, ["x@.service"], ["/var/lib/x"])
         self.assertEqual(sorted(scripts), ["postinst", "postrm", "prerm"])
