@@ -19,10 +19,12 @@ WITH_LIBRARY = {"hyselam_rviz_plugins": {"libqt6widgets6": ("qt6-svg-plugins",)}
 OPERATORS = {"hyselam_bringup": ("python3-rosnode", "python3-rosservice", "python3-rostopic")}
 # What its scripts call where it is installed, and say where it is not.
 SUGGESTED = {"hyselam_topo": ("espeak-ng", "pocketsphinx", "pocketsphinx-en-us"), "ngram_slam": ("python3-distributed",)}
-# What lintian finds and is as we want it: the tag, the kind of package that has it (one that holds a "library", a file for "pkg-config"), the reason.
+# What lintian finds and is as we want it: the tag, the kind of package that has it (one that holds a "library", one that is
+# "without-libc", a file for "pkg-config"), the reason.
 OVERRIDES = (
     ("shared-library-lacks-version", "library", "the packages depend on one another by exact versions, the libraries have none of their own"),
     ("package-name-doesnt-match-sonames", "library", "a package is what a catkin package installs: libraries beside programs and launch files"),
+    ("library-not-linked-against-libc", "without-libc", "a small library that calls only others, which are linked with the C library"),
     ("pkg-config-unavailable-for-cross-compilation", "pkg-config", "catkin writes lib/pkgconfig, and rospack and catkin_make are not for cross-compilation"),
 )
 
