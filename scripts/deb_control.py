@@ -6,22 +6,25 @@ import re
 import textwrap
 
 # Keys of rosdep in our package.xml files that are no packages of ROS: the names of Debian, as scripts/deps has them.
-ROSDEP = {"cli11": "libcli11-dev", "eigen": "libeigen3-dev", "libpcl-all-dev": "libpcl-dev", "libqt5-core": "libqt5core5a", "libqt5-gui": "libqt5gui5",
-          "libqt5-widgets": "libqt5widgets5", "nlohmann-json-dev": "nlohmann-json3-dev", "suitesparse": "libsuitesparse-dev", "tinyxml2": "libtinyxml2-dev",
-          "yaml-cpp": "libyaml-cpp-dev", "zlib": "zlib1g-dev"}
+ROSDEP = {"cli11": "libcli11-dev", "eigen": "libeigen3-dev", "libpcl-all-dev": "libpcl-dev", "nlohmann-json-dev": "nlohmann-json3-dev",
+          "suitesparse": "libsuitesparse-dev", "tinyxml2": "libtinyxml2-dev", "yaml-cpp": "libyaml-cpp-dev", "zlib": "zlib1g-dev"}
 PART_OF = "This package is part of HySeLAM, which gives a mobile robot with ROS a map that people can talk about."
 # What programs of people are started by: rosrun, as their man pages say.
 STARTERS = ("rosbash", "rospack-tools")
 # What the package does without, though its package.xml has it: a robot without a screen leaves it out by --no-install-recommends.
 RECOMMENDED = {"hyselam_bringup": ("hyselam_rviz_plugins", "rviz")}
+# What goes with a library that its own are linked with: the icons of a rviz of Qt 6 are drawn by a plugin that rviz itself does not ask for.
+WITH_LIBRARY = {"hyselam_rviz_plugins": {"libqt6widgets6": ("qt6-svg-plugins",)}}
 # What people who look at a running stack call, and the tutorials do.
 OPERATORS = {"hyselam_bringup": ("python3-rosnode", "python3-rosservice", "python3-rostopic")}
 # What its scripts call where it is installed, and say where it is not.
 SUGGESTED = {"hyselam_topo": ("espeak-ng", "pocketsphinx", "pocketsphinx-en-us"), "ngram_slam": ("python3-distributed",)}
-# What lintian finds and is as we want it: the tag, the kind of package that has it (one that holds a "library", a file for "pkg-config"), the reason.
+# What lintian finds and is as we want it: the tag, the kind of package that has it (one that holds a "library", one that is
+# "without-libc", a file for "pkg-config"), the reason.
 OVERRIDES = (
     ("shared-library-lacks-version", "library", "the packages depend on one another by exact versions, the libraries have none of their own"),
     ("package-name-doesnt-match-sonames", "library", "a package is what a catkin package installs: libraries beside programs and launch files"),
+    ("library-not-linked-against-libc", "without-libc", "a small library that calls only others, which are linked with the C library"),
     ("pkg-config-unavailable-for-cross-compilation", "pkg-config", "catkin writes lib/pkgconfig, and rospack and catkin_make are not for cross-compilation"),
 )
 
@@ -82,6 +85,12 @@ def relations(package, packed, owner, python):
             target.update(needed)
         suggests.update(development)
     return {"Depends": sorted(depends), "Recommends": sorted(recommends), "Suggests": sorted(suggests)}
+
+
+def recommended_with(package, depends):
+    """What is recommended since one of the libraries in `depends`, entries of dpkg-shlibdeps such as "libc6 (>= 2.36)", is linked."""
+    linked = {re.split(r"[ (|]", d)[0] for d in depends}
+    return sorted({name for library, names in WITH_LIBRARY.get(package, {}).items() if library in linked for name in names})
 
 
 def plugin_description(text):

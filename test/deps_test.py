@@ -21,8 +21,8 @@ PROGRAMS = {
 
 
 class DepsTest(unittest.TestCase):
-    def deps(self, lacking, packaged=(), programs=("sudo",), files=()):
-        """Exit status, what was said and what apt-get was asked, as a user of Debian 11 who lacks these packages."""
+    def deps(self, lacking, packaged=(), programs=("sudo",), files=(), release=11):
+        """Exit status, what was said and what apt-get was asked, as a user of a release of Debian who lacks these packages."""
         with tempfile.TemporaryDirectory() as folder:
             here = pathlib.Path(folder)
             (here / "scripts").mkdir()
@@ -30,7 +30,7 @@ class DepsTest(unittest.TestCase):
             text = (SCRIPTS / "deps").read_text()
             self.assertEqual(text.count(". /etc/os-release"), 1)
             (here / "scripts/deps").write_text(text.replace("/etc/os-release", f"{here}/os-release"))
-            (here / "os-release").write_text("ID=debian\nVERSION_ID=11\n")
+            (here / "os-release").write_text(f"ID=debian\nVERSION_ID={release}\n")
             (here / "scripts/env.sh").write_text(f". '{SCRIPTS}/env.sh'\nPATH={here}/bin\n")
             for tool in ("awk", "bash", "cat", "comm", "dirname", "env", "fmt", "grep", "mktemp", "rm", "sed", "sort"):
                 (here / "bin" / tool).symlink_to(shutil.which(tool))
@@ -75,6 +75,11 @@ class DepsTest(unittest.TestCase):
         status, said, _ = self.deps(["catkin"], packaged=["catkin"], files=["broken"])
         self.assertEqual(status, 1, said)
         self.assertIn("could not install", said)
+
+    def test_the_panel_is_compiled_against_the_qt_of_rviz(self):
+        for release, qt in ((11, ["qtbase5-dev"]), (12, ["qtbase5-dev"]), (13, ["qt6-base-dev", "qt6-svg-plugins"])):
+            status, said, asked = self.deps(qt, release=release)
+            self.assertEqual((status, asked[1:]), (0, [f"install -y --no-install-recommends {' '.join(qt)}"]), said)
 
     def test_cli11_is_needed_of_a_package_or_of_its_sources(self):
         cli11 = ["libcli11-dev"]

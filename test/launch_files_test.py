@@ -3,6 +3,7 @@
 and nodelet classes exist, and the packages that it uses are declared by the bringup."""
 import itertools
 import os
+import re
 import subprocess
 import tempfile
 import unittest
@@ -56,6 +57,15 @@ class LaunchFilesTest(unittest.TestCase):
             found = resolve_launch_arguments([PACKAGE, name])[0]
             for arguments in variants:
                 yield name, roslaunch.config.load_config_default([(found, arguments)], None, verbose=False)
+
+    def test_the_plugins_for_rviz_have_the_qt_of_rviz(self):
+        libraries = [os.path.join(p, "lib/libhyselam_rviz_plugins.so") for p in os.environ["CMAKE_PREFIX_PATH"].split(":")]
+        libraries = [path for path in libraries if os.path.exists(path)]
+        if not libraries:
+            self.skipTest("the plugins were not built")
+        needed = subprocess.run(["ldd", libraries[0]], capture_output=True, text=True, check=True).stdout
+        self.assertIn("librviz.so", needed)
+        self.assertEqual(len(set(re.findall(r"libQt\d+Core", needed))), 1, needed)
 
     def whole(self, *arguments, name="hyselam.launch"):
         """What hyselam.launch starts: full name of each node -> its configuration."""

@@ -64,6 +64,12 @@ class PackagesTest(unittest.TestCase):
         with self.assertRaisesRegex(KeyError, "ngram_slam: .* no_such_key"):
             texts.relations(Package("ngram_slam", ["no_such_key"]), {}, OWNERS.get, False)
 
+    def test_the_icons_of_rviz_go_with_its_qt(self):
+        linked = ["libc6 (>= 2.36)", "libqt6core6t64 (>= 6.8.2)", "libqt6widgets6 (>= 6.3.0)"]
+        self.assertEqual(texts.recommended_with("hyselam_rviz_plugins", linked), ["qt6-svg-plugins"])
+        self.assertEqual(texts.recommended_with("hyselam_rviz_plugins", ["libqt5gui5 (>= 5.7.0) | libqt5gui5-gles (>= 5.7.0)", "libqt5widgets5"]), [])
+        self.assertEqual(texts.recommended_with("hyselam_topo", linked), [])
+
     def test_a_system_key_of_every_package_has_a_name(self):
         packages = find_packages(str(ROOT / "src")).values()
         listed = subprocess.run([str(ROOT / "scripts/deps"), "--list", "debian-12"], capture_output=True, text=True, check=True).stdout.split()
@@ -118,6 +124,16 @@ class PackagesTest(unittest.TestCase):
                 described += 1
         self.assertGreater(described, 5)
 
+    def test_libraries_do_not_tell_where_they_were_built(self):
+        script = script_module.load(ROOT / "scripts/deb")
+        allowed = {pathlib.Path(p).name for p in script.SOURCES_LAST}
+        libraries = sorted((script.DEVEL / "lib").glob("lib*.so"))
+        if not libraries:
+            self.skipTest("the build is not in devel/")
+        # The folder of libraries is in all of them here, and not in those that are installed.
+        told = [p.name for p in libraries if f"{ROOT}/src/".encode() in p.read_bytes()]
+        self.assertEqual(set(told) - allowed, set())
+
     def test_maintainer_scripts_are_shell(self):
         scripts = texts.maintainer_scripts("ros-x", True, ["x@.service"], ["/var/lib/x"])
         self.assertEqual(sorted(scripts), ["postinst", "postrm", "prerm"])
@@ -149,6 +165,26 @@ class PackagesTest(unittest.TestCase):
         for had in ("", "0 B/"):
             self.assertEqual(script.downloads(text.format(had)), ("533", "272 MB", "1326 MB"))
         self.assertIsNone(script.downloads("0 upgraded, 0 newly installed, 0 to remove and 0 not upgraded.\n"))
+
+    def test_packages_are_checked_on_the_release_they_were_made_on(self):
+        script = script_module.load(ROOT / "scripts/check_deb")
+        self.assertEqual(script.system_here('PRETTY_NAME="Debian GNU/Linux 13 (trixie)"\nVERSION_ID="13"\nID=debian\n'), "debian-13")
+        versions = [texts.debian_version("0.1.0", release, "20260101.000000") for release in ("debian12", "debian13")]
+        self.assertEqual(script.made_elsewhere(versions, "debian-13"), versions[:1])
+        self.assertEqual(script.made_elsewhere(versions[1:], "debian-13"), [])
+        with tempfile.TemporaryDirectory() as folder:
+            def said(*arguments):
+                run = subprocess.run([str(ROOT / "scripts/check_deb"), "--deb", folder, "--folder", f"{folder}/system", *arguments], capture_output=True,
+                                     text=True, check=False)
+                self.assertEqual((run.returncode, os.path.exists(f"{folder}/system")), (2, False), run.stderr)
+                return run.stderr
+            self.assertIn("no system debian-1 can be made; with --system: debian-11, debian-12, debian-13", said("--system", "debian-1"))
+            self.assertIn("holds no packages", said("--system", "debian-13"))
+            (pathlib.Path(folder) / "p/DEBIAN").mkdir(parents=True)
+            fields = {"Package": "ros-p", "Version": versions[0], "Architecture": "all", "Maintainer": "M <m@example.org>"}
+            (pathlib.Path(folder) / "p/DEBIAN/control").write_text(texts.control(fields, "Packed for a test."))
+            subprocess.run(["dpkg-deb", "--root-owner-group", "--build", f"{folder}/p", f"{folder}/ros-p.deb"], check=True, capture_output=True)
+            self.assertIn(f"packages that were not made on debian-13: {versions[0]}", said("--system", "debian-13"))
 
     def test_what_runs_in_the_system_is_shell(self):
         script = script_module.load(ROOT / "scripts/check_deb")

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """scripts/platform without a network and without another system: its arguments, what it reads in logs, the page of its records, which folders
 it leaves alone."""
+import contextlib
 import json
 import os
 import pathlib
@@ -33,6 +34,7 @@ for key in ("tests", "test_minutes"):
 
 class FakeSystem(platform.System):
     """Nothing is made, mounted or run: each step leaves a log and ends with a status."""
+    commit_known = contextlib.nullcontext
     steps, statuses, logs_of = [], {}, {}
 
     def make(self, fresh):
@@ -153,6 +155,32 @@ class PlatformTest(unittest.TestCase):
         self.assertEqual((record["versions"]["CMake"], record["versions"]["CLI11"]), ("3.18.4", None))
         self.assertIn("| Debian 11 | g++-9 9.3.0 | ", page)
         self.assertIn("- without: no package librapidcheck-dev here", page)
+
+    def test_packages_are_made_of_the_commit_and_looked_at(self):
+        log = "| ros-a | all | 0.01 | 0.02 | 0 |\n20 packages in /opt/hyselam/out/deb, 9.8 MB\nlintian: {} errors and warnings\n"
+        status, record, page = self.run_of("--deb", logs={"deb": log.format(0)})
+        self.assertEqual([(step, network) for step, _, network, _ in FakeSystem.steps][-3:], [("test", False), ("deb_tools", True), ("deb", False)])
+        self.assertEqual((status, record["deb"]), (0, {"passed": True, "minutes": 1.0, "packages": 20, "megabytes": 9.8, "lintian": 0}))
+        self.assertIn("- `make deb`: 20 packages, 9.8 MB, 0 errors and warnings of lintian\n", page)
+        status, record, page = self.run_of("--deb", logs={"deb": log.format(2)}, statuses={"deb": 1})
+        self.assertEqual((status, record["deb"]["passed"], record["deb"]["lintian"]), (1, False, 2))
+        self.assertIn("- `make deb` **failed**: 20 packages, 9.8 MB, 2 errors and warnings of lintian\n", page)
+        status, record, page = self.run_of("--deb", logs={"deb": "error: the build failed\n"}, statuses={"deb": 2})
+        self.assertEqual((status, record["deb"]), (1, {"passed": False, "minutes": 1.0}))
+        self.assertIn("- `make deb` **failed**\n", page)
+        self.assertIsNone(platform.packed_of("20 packages in /x, 9.8 MB\nlintian: not installed, left out: apt-get install lintian\n")["lintian"])
+
+    def test_the_tree_there_knows_its_commit_while_it_is_packed(self):
+        commit = subprocess.run(["git", "-C", str(SCRIPT.parent), "rev-parse", "HEAD"], capture_output=True, text=True, check=False).stdout.strip()
+        if not commit:
+            self.skipTest("no checkout of git")
+        with tempfile.TemporaryDirectory() as folder:
+            system = platform.System(pathlib.Path(folder), "suite", "http://a.org/debian", False)
+            tree = system.root / platform.TREE
+            tree.mkdir(parents=True)
+            with system.commit_known(commit):
+                head = subprocess.run(["git", "-C", str(tree), "log", "--format=%H"], capture_output=True, text=True, check=True).stdout.split()
+            self.assertEqual((head, list(tree.iterdir())), ([commit], []))
 
     def test_the_compiler_cache_of_an_earlier_run_is_not_kept(self):
         for arguments, cmake, folder in ((("--ccache",), "-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_C_COMPILER_LAUNCHER=ccache", "/var/cache/ccache"),

@@ -111,7 +111,8 @@ void ChatPanel::complete() {
     for (const QString& name : names_) {
       if (!name.startsWith(part, Qt::CaseInsensitive) || name.size() == part.size()) continue;
       line_->setText(text.left(begin) + name);
-      line_->setSelection(text.size(), line_->text().size() - text.size());
+      const int typed = static_cast<int>(text.size());
+      line_->setSelection(typed, static_cast<int>(line_->text().size()) - typed);
       return;
     }
   }
@@ -125,8 +126,9 @@ bool ChatPanel::eventFilter(QObject* object, QEvent* event) {
       return true;
     }
     if (key == Qt::Key_Up || key == Qt::Key_Down) {
-      recalled_ = std::max(0, std::min(said_.size(), recalled_ + (key == Qt::Key_Up ? 1 : -1)));
-      line_->setText(recalled_ == 0 ? QString() : said_[said_.size() - recalled_]);
+      const int said = static_cast<int>(said_.size());  // Qt 6 counts in 64 bits
+      recalled_ = std::max(0, std::min(said, recalled_ + (key == Qt::Key_Up ? 1 : -1)));
+      line_->setText(recalled_ == 0 ? QString() : said_[said - recalled_]);
       return true;
     }
   }
