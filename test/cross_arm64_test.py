@@ -33,7 +33,10 @@ class CrossTest(unittest.TestCase):
     def test_of_a_package_the_libraries_go_into_the_system_and_no_program(self):
         kept = {"./lib/aarch64-linux-gnu/libc.so.6": "usr/lib/aarch64-linux-gnu/libc.so.6", "./lib/ld-linux-aarch64.so.1": "usr/lib/ld-linux-aarch64.so.1",
                 "./usr/lib/aarch64-linux-gnu/cmake/a/aConfig.cmake": "usr/lib/aarch64-linux-gnu/cmake/a/aConfig.cmake", "./usr/include/a.h": "usr/include/a.h",
-                "./usr/lib/libarmadillo.so": "usr/lib/libarmadillo.so", "./usr/share/roscpp/package.xml": "usr/share/roscpp/package.xml"}
+                "./usr/lib/libarmadillo.so": "usr/lib/libarmadillo.so", "./usr/share/roscpp/package.xml": "usr/share/roscpp/package.xml",
+                "./usr/bin/vtkWrapJava-9.1": "usr/bin/vtkWrapJava-9.1",
+                "./usr/lib/python3/dist-packages/vtkmodules/vtkA.cpython-311-aarch64-linux-gnu.so":
+                    "usr/lib/python3/dist-packages/vtkmodules/vtkA.cpython-311-aarch64-linux-gnu.so"}
         for name, expected in kept.items():
             self.assertEqual(cross.wanted_member(name), expected)
         for name in ("./usr/bin/python3", "./bin/sh", "./etc/passwd", "./usr/share/doc/a/copyright", "./usr/lib/qt5/bin/moc", "./usr/lib/python3/a.py", "./var/x"):
