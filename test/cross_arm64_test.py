@@ -93,6 +93,19 @@ class CrossTest(unittest.TestCase):
         self.assertIn("other bytes", cross.difference(b"x 1.5", b"y 1.5"))
         self.assertIn("other bytes", cross.difference(b"\x89PNG 1", b"\x89PNG 2"))
 
+    def test_what_differs_is_replaced_by_what_amd64_wrote(self):
+        with tempfile.TemporaryDirectory() as folder:
+            here, there = pathlib.Path(folder) / "here", pathlib.Path(folder) / "there"
+            for root, texts in ((here, {"same": "1", "m/a": "x 1", "m/only": "a", "other": "1"}), (there, {"same": "1", "m/a": "x 2", "m/theirs": "b"})):
+                for name, text in texts.items():
+                    (root / name).parent.mkdir(parents=True, exist_ok=True)
+                    (root / name).write_text(text)
+            self.assertEqual(cross.differences(here, there, ["same", "m/", "other", "none"]),
+                             {"m/a": "1 of 1 numbers differ, at most by 1", "m/only": "written on amd64 only", "m/theirs": "written on arm64 only",
+                              "none": "written on neither", "other": "written on amd64 only"})
+            self.assertEqual({str(p.relative_to(there)): p.read_text() for p in there.rglob("*") if p.is_file()},
+                             {"same": "1", "m/a": "x 1", "m/a.differs": "x 2", "m/only": "a", "m/theirs.differs": "b", "other": "1"})
+
     def test_the_drawn_graph_is_always_the_same_and_has_loops(self):
         graph = cross.drawn_graph()
         self.assertEqual(graph, cross.drawn_graph())
