@@ -33,7 +33,10 @@ class CrossTest(unittest.TestCase):
     def test_of_a_package_the_libraries_go_into_the_system_and_no_program(self):
         kept = {"./lib/aarch64-linux-gnu/libc.so.6": "usr/lib/aarch64-linux-gnu/libc.so.6", "./lib/ld-linux-aarch64.so.1": "usr/lib/ld-linux-aarch64.so.1",
                 "./usr/lib/aarch64-linux-gnu/cmake/a/aConfig.cmake": "usr/lib/aarch64-linux-gnu/cmake/a/aConfig.cmake", "./usr/include/a.h": "usr/include/a.h",
-                "./usr/lib/libarmadillo.so": "usr/lib/libarmadillo.so", "./usr/share/roscpp/package.xml": "usr/share/roscpp/package.xml"}
+                "./usr/lib/libarmadillo.so": "usr/lib/libarmadillo.so", "./usr/share/roscpp/package.xml": "usr/share/roscpp/package.xml",
+                "./usr/bin/vtkWrapJava-9.1": "usr/bin/vtkWrapJava-9.1",
+                "./usr/lib/python3/dist-packages/vtkmodules/vtkA.cpython-311-aarch64-linux-gnu.so":
+                    "usr/lib/python3/dist-packages/vtkmodules/vtkA.cpython-311-aarch64-linux-gnu.so"}
         for name, expected in kept.items():
             self.assertEqual(cross.wanted_member(name), expected)
         for name in ("./usr/bin/python3", "./bin/sh", "./etc/passwd", "./usr/share/doc/a/copyright", "./usr/lib/qt5/bin/moc", "./usr/lib/python3/a.py", "./var/x"):
@@ -89,6 +92,19 @@ class CrossTest(unittest.TestCase):
         self.assertEqual(cross.difference(b"x 1.5 2 -3e-1", b"x 1.5 2.25 -3e-1"), "1 of 3 numbers differ, at most by 0.25")
         self.assertIn("other bytes", cross.difference(b"x 1.5", b"y 1.5"))
         self.assertIn("other bytes", cross.difference(b"\x89PNG 1", b"\x89PNG 2"))
+
+    def test_what_differs_is_replaced_by_what_amd64_wrote(self):
+        with tempfile.TemporaryDirectory() as folder:
+            here, there = pathlib.Path(folder) / "here", pathlib.Path(folder) / "there"
+            for root, texts in ((here, {"same": "1", "m/a": "x 1", "m/only": "a", "other": "1"}), (there, {"same": "1", "m/a": "x 2", "m/theirs": "b"})):
+                for name, text in texts.items():
+                    (root / name).parent.mkdir(parents=True, exist_ok=True)
+                    (root / name).write_text(text)
+            self.assertEqual(cross.differences(here, there, ["same", "m/", "other", "none"]),
+                             {"m/a": "1 of 1 numbers differ, at most by 1", "m/only": "written on amd64 only", "m/theirs": "written on arm64 only",
+                              "none": "written on neither", "other": "written on amd64 only"})
+            self.assertEqual({str(p.relative_to(there)): p.read_text() for p in there.rglob("*") if p.is_file()},
+                             {"same": "1", "m/a": "x 1", "m/a.differs": "x 2", "m/only": "a", "m/theirs.differs": "b", "other": "1"})
 
     def test_the_drawn_graph_is_always_the_same_and_has_loops(self):
         graph = cross.drawn_graph()

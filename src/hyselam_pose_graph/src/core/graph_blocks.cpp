@@ -3,7 +3,7 @@
 namespace hyselam_pose_graph {
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-__attribute__((flatten, target_clones("arch=haswell", "default")))
+__attribute__((flatten, target_clones("avx2", "default")))
 #endif
 bool
 factorPoses(BlockCholesky<Block3>* matrix) {

@@ -12,7 +12,10 @@ namespace hyselam_pose_graph {
 /// two of SSE2 and NEON. (The vector types of GCC and clang; they need no instruction set.)
 struct Block3 {
   typedef double Vector __attribute__((vector_size(32)));
-  Vector column[3];
+  /// Code compiled for AVX would take a Vector to be aligned to 32 bytes, and all other code
+  /// allocates them aligned to 16.
+  typedef double Column __attribute__((vector_size(32), aligned(16)));
+  Column column[3];
 
   static Block3 zero() { return {}; }
   void subtractProduct(const Block3& a, const Block3& b) {
@@ -88,8 +91,8 @@ struct BlockComplex {
   void subtractAdjointTimes(const Vector& x, Vector& y) const { y -= times(std::conj(value), x); }
 };
 
-/// BlockCholesky::factor, compiled also for processors with AVX2 and FMA and chosen when the
-/// program starts.
+/// BlockCholesky::factor, compiled also for processors with AVX2 and chosen when the program
+/// starts. Without FMA: the result is the same bytes on all of them.
 bool factorPoses(BlockCholesky<Block3>* matrix);
 
 }  // namespace hyselam_pose_graph

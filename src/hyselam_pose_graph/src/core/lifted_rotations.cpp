@@ -379,7 +379,7 @@ std::vector<SystemPose> LiftedRotations::poses() const {
     const Vector4& u = v[i].rotation;
     const Complex r = std::conj(direction[0]) * Complex(u[0], u[1]) +
                       std::conj(direction[1]) * Complex(u[2], u[3]);
-    const double length = std::abs(r);
+    const double length = magnitude(r);
     const Complex unit = length > 0.0 ? r / length : Complex(1.0, 0.0);
     SystemPose& p = poses[i];
     if (system.row(static_cast<int>(i)) < 0) {

@@ -318,7 +318,7 @@ bool PoseSystem::relaxRotations(const std::vector<double>& weights,
   for (std::size_t i = 0; i < poses->size(); ++i) {
     if (row_[i] < 0) continue;
     const Complex& r = b[static_cast<std::size_t>(row_[i])];
-    const double length = std::abs(r);
+    const double length = magnitude(r);
     SystemPose& p = (*poses)[i];
     p.theta = std::arg(r);
     p.c = length > 0.0 ? r.real() / length : 1.0;

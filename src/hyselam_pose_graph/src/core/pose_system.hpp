@@ -1,6 +1,7 @@
 // The normal equations of a pose graph; which edge contributes to which block is computed once.
 #pragma once
 
+#include <cmath>
 #include <complex>
 #include <vector>
 
@@ -26,6 +27,11 @@ struct SystemEdge {
   double c, s;            ///< cosine and sine of theta
   PlanarInformation w;    ///< rotated
 };
+
+/// |c|, not by std::abs: hypot's last digit is not the same on amd64 and on arm64.
+inline double magnitude(const std::complex<double>& c) {
+  return std::sqrt(std::norm(c));
+}
 
 /// A pose with its sine and cosine.
 struct SystemPose {
