@@ -11,8 +11,9 @@ ROSDEP = {"cli11": "libcli11-dev", "eigen": "libeigen3-dev", "libpcl-all-dev": "
 PART_OF = "This package is part of HySeLAM, which gives a mobile robot with ROS a map that people can talk about."
 # What programs of people are started by: rosrun, as their man pages say.
 STARTERS = ("rosbash", "rospack-tools")
-# What the package does without, though its package.xml has it: a robot without a screen leaves it out by --no-install-recommends.
-RECOMMENDED = {"hyselam_bringup": ("hyselam_rviz_plugins", "rviz")}
+# What the package does without, though its package.xml has it: a robot without a screen, or without some layers, leaves it out by
+# --no-install-recommends; a launch file of a layer that is not there says so.
+RECOMMENDED = {"hyselam_bringup": ("hyselam_rviz_plugins", "rviz", "selovis", "hyselam_objects", "hyselam_web")}
 # What goes with a library that its own are linked with: the icons of a rviz of Qt 6 are drawn by a plugin that rviz itself does not ask for.
 WITH_LIBRARY = {"hyselam_rviz_plugins": {"libqt6widgets6": ("qt6-svg-plugins",)}}
 # What people who look at a running stack call, and the tutorials do.
@@ -34,12 +35,14 @@ def debian_name(package):
     return "ros-" + package.replace("_", "-")
 
 
-def debian_version(version, release, commit_time="", modified=False):
+def debian_version(version, release, commit_time="", modified=False, before_release=False):
     """Of the version of package.xml on a release such as debian12; between tags (the time of a commit is given) newer commits have higher ones.
+
+    `before_release`: the version has no tag yet: those of now sort below the release.
 
     No longer than file names may be; the commit is told by changelog(). What was packed from a modified tree has an m behind the time.
     """
-    between = f"+{commit_time}{'m' if modified else ''}" if commit_time else ""
+    between = f"{'~' if before_release else '+'}{commit_time}{'m' if modified else ''}" if commit_time else ""
     return f"{version}{between}-1~{release}"
 
 

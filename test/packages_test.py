@@ -40,11 +40,12 @@ class Package:
 
 class PackagesTest(unittest.TestCase):
     def test_newer_commits_have_higher_versions(self):
-        versions = [texts.debian_version("0.1.0", "debian12"), texts.debian_version("0.1.0", "debian12", "20260101.000000"),
+        versions = [texts.debian_version("0.1.0", "debian12", "20251231.000000", before_release=True),
+                    texts.debian_version("0.1.0", "debian12"), texts.debian_version("0.1.0", "debian12", "20260101.000000"),
                     texts.debian_version("0.1.0", "debian12", "20260102.000000"),
                     texts.debian_version("0.1.0", "debian12", "20260102.000000", True), texts.debian_version("0.1.0", "debian12", "20260102.000001"),
                     texts.debian_version("0.1.1", "debian12")]
-        self.assertEqual(versions[0], "0.1.0-1~debian12")
+        self.assertEqual(versions[1], "0.1.0-1~debian12")
         for older, newer in zip(versions, versions[1:]):
             self.assertEqual(subprocess.run(["dpkg", "--compare-versions", older, "lt", newer], check=False).returncode, 0, (older, newer))
 
@@ -58,6 +59,9 @@ class PackagesTest(unittest.TestCase):
     def test_relations(self):
         package = Package("hyselam_bringup", ["hyselam_msgs", "hyselam_rviz_plugins", "nodelet", "roscpp"], ["zlib", "nodelet"])
         found = texts.relations(package, {"hyselam_msgs": "1-1", "hyselam_rviz_plugins": "2-1"}, OWNERS.get, False)
+        self.assertEqual(texts.relations(Package("hyselam_bringup", ["selovis", "hyselam_topo"], []), {"selovis": "1-1", "hyselam_topo": "1-1"}, OWNERS.get, False),
+                         {"Depends": ["ros-hyselam-topo (= 1-1)"], "Suggests": [],
+                          "Recommends": ["python3-rosnode", "python3-rosservice", "python3-rostopic", "ros-selovis (= 1-1)"]})
         self.assertEqual(found, {"Depends": ["libnodeletlib-tools", "ros-hyselam-msgs (= 1-1)"],
                                  "Recommends": ["python3-rosnode", "python3-rosservice", "python3-rostopic", "ros-hyselam-rviz-plugins (= 2-1)"],
                                  "Suggests": ["libroscpp-dev", "zlib1g-dev"]})
@@ -202,7 +206,9 @@ class PackagesTest(unittest.TestCase):
     @unittest.skipUnless(shutil.which("systemd-analyze") and pathlib.Path("/usr/bin/roslaunch").exists(), "no systemd-analyze, or ROS is not in /usr")
     def test_systemd_has_nothing_to_say_of_the_unit(self):
         run = subprocess.run(["systemd-analyze", "verify", "--man=no", str(UNIT)], capture_output=True, text=True, check=False)
-        self.assertEqual((run.returncode, [line for line in run.stderr.splitlines() if "hyselam" in line]), (0, []))
+        self.assertEqual([line for line in (run.stdout + run.stderr).splitlines() if "hyselam" in line], [])
+        # systemd 247 ends with 1 where the machine was not booted by it, without a word.
+        self.assertTrue(run.returncode == 0 or not pathlib.Path("/run/systemd/system").exists(), run.stderr)
 
     @unittest.skipUnless(shutil.which("dpkg-scanpackages"), "dpkg-dev is not installed")
     def test_an_apt_repository_of_a_folder(self):
