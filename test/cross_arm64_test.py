@@ -91,6 +91,9 @@ class CrossTest(unittest.TestCase):
         self.assertIsNone(cross.difference(b"x 1.5", b"x 1.5"))
         self.assertEqual(cross.difference(b"x 1.5 2 -3e-1", b"x 1.5 2.25 -3e-1"), "1 of 3 numbers differ, at most by 0.25")
         self.assertIn("other bytes", cross.difference(b"x 1.5", b"y 1.5"))
+        self.assertTrue(cross.only_rounded(cross.difference(b"x 1.5", b"x 1.5000000000000002")))
+        for other in (b"x 1.50001", b"y 1.5", b"x 1.5 1"):
+            self.assertFalse(cross.only_rounded(cross.difference(b"x 1.5", other)), other)
         self.assertIn("other bytes", cross.difference(b"\x89PNG 1", b"\x89PNG 2"))
 
     def test_what_differs_is_replaced_by_what_amd64_wrote(self):
@@ -121,7 +124,7 @@ class CrossTest(unittest.TestCase):
             page = (folder / "page.md").read_text()
         section = page[page.index("## Debian 12, cross-built for arm64"):]
         self.assertNotIn("| Debian 12 |", page)
-        self.assertIn("| aarch64-linux-gnu-g++ 12.2.0 | qemu-user 7.2 | 2026-01-02 | 0123abcd | 10, **not all** | 20 | 3 | 2 of 5 | 4 | 7 | 1 | 0 |", section)
+        self.assertIn("| aarch64-linux-gnu-g++ 12.2.0 | qemu-user 7.2 | 2026-01-02 | 0123abcd | 10, **not all** | 20 | 3 | 2 of the tree's 5 | 4 | 7 | 1 | 0 |", section)
         self.assertIn("- not built: b_test\n- failed: a: S.c: no\n", section)
         self.assertIn("| places | `gr2to map.yaml` | 2 | none, same bytes |", section)
         self.assertIn("| graph | `optimize g` | 1 | c: 1 of 2 numbers differ, at most by 1e-09 |", section)
