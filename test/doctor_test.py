@@ -105,8 +105,8 @@ class DoctorTest(unittest.TestCase):
         return " | ".join(f"{f['text']} {f['hint']}" for f in findings if f["name"] == name and f["level"] == "WRONG")
 
     def robot(self, scan_of=lambda s: s, static=None, topic="scan", odom="odom", pose=True, grid=True, back=False, clock=True,
-              says=None, scans=50):
-        """A player of the recording: clock, scans, tf, a map and a pose in it; `says`: what layers tell, by their names."""
+              says=None, scans=50, runs=""):
+        """A player of the recording: clock, scans, tf, a map and a pose in it; `says`: what layers tell, by their names, of version `runs`."""
         def play(doctor):
             publish = {
                 "clock": rospy.Publisher("/clock", Clock, queue_size=1000),
@@ -121,7 +121,7 @@ class DoctorTest(unittest.TestCase):
             try:
                 # The doctor has to know of the publishers when it asks the master; then it subscribes.
                 publish["static"].publish(TFMessage(self.recording.static if static is None else static))
-                publish["said"].publish(DiagnosticArray(status=[DiagnosticStatus(1, name, message, "", [])
+                publish["said"].publish(DiagnosticArray(status=[DiagnosticStatus(1, name, message, runs, [])
                                                                 for name, message in (says or {}).items()]))
                 if grid:
                     publish["map"].publish(self.recording.map if grid is True else grid)
@@ -319,6 +319,15 @@ class DoctorTest(unittest.TestCase):
             self.assertIn("2D Pose Estimate", self.wrong(findings, "tf"))
         finally:
             own.unregister()
+
+    def test_the_version_that_runs_is_told_beside_the_installed_one(self):
+        installed = subprocess.run(["rosrun", "hyselam_bringup", "doctor", "--version"], stdout=subprocess.PIPE, text=True, check=True).stdout.strip()
+        says = {"slam: SLAM": "38 keyframes"}
+        for runs, level, text in ((installed, "ok", f"{installed} runs"), ("HySeLAM 0.9.0", "note", f"HySeLAM 0.9.0 runs, {installed} is installed here")):
+            _, findings = self.call(self.robot(says=says, runs=runs))
+            self.assertEqual([(f["level"], f["text"]) for f in findings if f["name"] == "version"], [(level, text)], self.said)
+        _, findings = self.call(self.robot(says=says))
+        self.assertFalse([f for f in findings if f["name"] == "version"], "of a program of before 1.0.0 nothing is known")
 
     def test_a_robot_in_a_namespace(self):
         """Its layers are meant, not another one's; who forgets the namespace is told of it."""

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "hyselam_common/version.hpp"
+
 namespace hyselam {
 
 Diagnostics::Diagnostics(ros::NodeHandle nh, const std::string& name, double period,
@@ -20,6 +22,8 @@ void Diagnostics::publish() {
   array.status.emplace_back();
   diagnostic_msgs::DiagnosticStatus& status = array.status.back();
   status.name = name_;
+  status.hardware_id =
+      std::string("HySeLAM ") + version();  // of what runs, which may not be what is installed
   status.level = diagnostic_msgs::DiagnosticStatus::OK;
   fill_(status);
   publisher_.publish(array);
