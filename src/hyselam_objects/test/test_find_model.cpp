@@ -65,20 +65,6 @@ TEST(FindModel, FarPointsThatAreTooFewToBeDescribedChangeNothing) {
   EXPECT_LT(with[0].model_in_scene.translation().norm(), 0.01);
 }
 
-TEST(FindModel, OfManyCorrespondencesTheMostAlikeAreTaken) {
-  const OrganizedCloud scene = within(drawTable(2), 2.2f);
-  FindModelParams params;
-  params.min_probability = 0.0;
-  const auto all = findModel(scene, scene, params);  // the whole table is the model
-  ASSERT_FALSE(all.empty());
-  params.max_correspondences = 60;
-  const auto few = findModel(scene, scene, params);
-  ASSERT_FALSE(few.empty());
-  EXPECT_GT(all[0].correspondences, 60u);
-  EXPECT_LE(few[0].correspondences, 60u);
-  EXPECT_LT(few[0].model_in_scene.translation().norm(), 0.01);
-}
-
 TEST(FindModel, FindsNothingWhereThereAreOnlyScatteredPoints) {
   const OrganizedCloud model = largestThing(within(drawTable(2), 2.2f));
   OrganizedCloud scattered;

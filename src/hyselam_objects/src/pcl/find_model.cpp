@@ -132,61 +132,21 @@ int leastNeighbors(const KeypointCloud& model, const FindModelParams& params) {
   return std::max(1, *median / 4);
 }
 
-/// Descriptors that are known, a row each, and of which keypoint each is.
-struct DescriptorRows {
-  Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> values;
-  std::vector<int> index;
-};
-
-DescriptorRows finiteDescriptors(const pcl::PointCloud<pcl::SHOT352>& descriptors) {
-  constexpr int kSize = pcl::SHOT352::descriptorSize();
-  DescriptorRows out;
-  for (std::size_t i = 0; i < descriptors.size(); ++i) {
-    if (std::isfinite(descriptors[i].descriptor[0])) out.index.push_back(static_cast<int>(i));
-  }
-  out.values.resize(static_cast<Eigen::Index>(out.index.size()), kSize);
-  for (std::size_t i = 0; i < out.index.size(); ++i) {
-    const auto& shot = descriptors[static_cast<std::size_t>(out.index[i])];
-    out.values.row(static_cast<Eigen::Index>(i)) =
-        Eigen::Map<const Eigen::Matrix<float, 1, kSize>>(shot.descriptor);
-  }
-  return out;
-}
-
-/// Pairs of a keypoint of the model and one of the scene with similar descriptors; of more than
-/// `most` the most alike: the time of their grouping grows with the square of their number.
-pcl::CorrespondencesPtr matchDescriptors(const KeypointCloud& model, const KeypointCloud& scene,
-                                         int most) {
+/// Pairs of a keypoint of the model and one of the scene with similar descriptors.
+pcl::CorrespondencesPtr matchDescriptors(const KeypointCloud& model, const KeypointCloud& scene) {
   constexpr float kMaxSquaredDistance = 0.25f;  // of SHOT descriptors, as in PCL's tutorial
-  constexpr Eigen::Index kRows = 256;           // of the scene at a time, for the cache
+  pcl::KdTreeFLANN<pcl::SHOT352> nearest;
   pcl::CorrespondencesPtr pairs(new pcl::Correspondences);
-  const DescriptorRows of_model = finiteDescriptors(*model.descriptors);
-  const DescriptorRows of_scene = finiteDescriptors(*scene.descriptors);
-  if (of_model.index.empty()) return pairs;
-  // All products at once: in 352 dimensions a tree of neighbors looks at nearly everything, too.
-  const Eigen::VectorXf half = 0.5f * of_model.values.rowwise().squaredNorm();
-  Eigen::MatrixXf products;
-  Eigen::VectorXf nearness(half.size());
-  for (Eigen::Index begin = 0; begin < of_scene.values.rows(); begin += kRows) {
-    const auto rows =
-        of_scene.values.middleRows(begin, std::min(kRows, of_scene.values.rows() - begin));
-    products.noalias() = of_model.values * rows.transpose();
-    for (Eigen::Index i = 0; i < rows.rows(); ++i) {
-      Eigen::Index best = 0;
-      nearness.noalias() = products.col(i) - half;
-      nearness.maxCoeff(&best);
-      const float squared = (of_model.values.row(best) - rows.row(i)).squaredNorm();
-      if (squared < kMaxSquaredDistance) {
-        pairs->emplace_back(of_model.index[static_cast<std::size_t>(best)],
-                            of_scene.index[static_cast<std::size_t>(begin + i)], squared);
-      }
+  if (scene.keypoints->empty()) return pairs;
+  nearest.setInputCloud(model.descriptors);
+  std::vector<int> index(1);
+  std::vector<float> squared(1);
+  for (std::size_t i = 0; i < scene.descriptors->size(); ++i) {
+    const pcl::SHOT352& shot = (*scene.descriptors)[i];
+    if (!std::isfinite(shot.descriptor[0])) continue;
+    if (nearest.nearestKSearch(shot, 1, index, squared) == 1 && squared[0] < kMaxSquaredDistance) {
+      pairs->emplace_back(index[0], static_cast<int>(i), squared[0]);
     }
-  }
-  const auto kept = static_cast<std::size_t>(most);
-  if (pairs->size() > kept) {
-    std::stable_sort(pairs->begin(), pairs->end(),
-                     [](const auto& a, const auto& b) { return a.distance < b.distance; });
-    pairs->resize(kept);
   }
   return pairs;
 }
@@ -200,7 +160,7 @@ struct PoseHypothesis {
 std::vector<PoseHypothesis> groupCorrespondences(const KeypointCloud& model,
                                                  const KeypointCloud& scene,
                                                  const FindModelParams& params) {
-  const pcl::CorrespondencesPtr pairs = matchDescriptors(model, scene, params.max_correspondences);
+  const pcl::CorrespondencesPtr pairs = matchDescriptors(model, scene);
   if (pairs->empty()) return {};
   std::vector<Eigen::Matrix4f, Eigen::aligned_allocator<Eigen::Matrix4f>> poses;
   std::vector<pcl::Correspondences> groups;
@@ -338,8 +298,6 @@ void FindModelParams::describe(hyselam::ParameterVisitor& visit) {
   visit("consistency_distance", consistency_distance, Range::above(0.0), "m",
         "by which lengths of two correspondences may differ");
   visit("min_correspondences", min_correspondences, Range::atLeast(3), "", "of a pose");
-  visit("max_correspondences", max_correspondences, Range::atLeast(3), "",
-        "between model and scene, the most alike, of which poses are made");
   visit("max_hypotheses", max_hypotheses, Range::atLeast(1), "",
         "number of poses that are refined");
   visit("inlier_distance", inlier_distance, Range::above(0.0), "m",

@@ -19,7 +19,6 @@ struct FindModelParams {
   double descriptor_radius = 0.03;     ///< [m], > 0
   double consistency_distance = 0.01;  ///< by which lengths of two correspondences may differ [m]
   int min_correspondences = 5;         ///< of a pose, >= 3
-  int max_correspondences = 3000;      ///< of which poses are made, the most alike, >= 3
   int max_hypotheses = 8;              ///< poses with most correspondences that are refined, >= 1
   double inlier_distance = 0.01;       ///< of a point of the model to the scene [m], > 0
   double min_probability = 0.5;        ///< of a pose that is told, 0 .. 1
