@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <ctime>
 #include <iostream>
+#include <map>
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/folder.hpp"
@@ -83,17 +84,18 @@ std::string remarks(const Outcome& outcome) {
 void writeObjects(const std::string& folder, const OrganizedCloud& cloud,
                   const CloudSegmentation& found) {
   hyselam::makeFolder(folder);
-  for (std::uint32_t label = 2; label < found.objects + 2; ++label) {
-    OrganizedCloud points;
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
-      if (found.labels[i] != label) continue;
-      points.points.push_back(cloud.points[i]);
-      if (!cloud.colors.empty()) points.colors.push_back(cloud.colors[i]);
-    }
-    points.width = static_cast<int>(points.size());
-    points.height = 1;
-    writePcd(folder + "/object_" + std::to_string(label) + ".pcd", points,
-             std::vector<std::uint32_t>(points.size(), label));
+  std::map<std::uint32_t, OrganizedCloud> objects;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (found.labels[i] < 2) continue;
+    OrganizedCloud& object = objects[found.labels[i]];
+    object.points.push_back(cloud.points[i]);
+    if (!cloud.colors.empty()) object.colors.push_back(cloud.colors[i]);
+  }
+  for (auto& [label, object] : objects) {
+    object.width = static_cast<int>(object.size());
+    object.height = 1;
+    writePcd(folder + "/object_" + std::to_string(label) + ".pcd", object,
+             std::vector<std::uint32_t>(object.size(), label));
   }
 }
 
