@@ -99,7 +99,7 @@ std::vector<Format> formats() {
                  }});
   sample("topo.xml", 1, 1, mark("version=\"", 1, "\" frame"),
          [](const std::string& path) { EXPECT_EQ(hyselam_topo::loadXml(path).places.size(), 2u); });
-  sample("description.xml", 1, 1, mark("version=\"", 1, "\" robot"), [](const std::string& path) {
+  sample("description.xml", 2, 1, mark("version=\"", 2, "\" robot"), [](const std::string& path) {
     EXPECT_EQ(hyselam_topo::loadDescription(path).places.size(), 2u);
   });
   sample("dialogue.state", 1, 1, mark("hyselam_dialogue ", 1, " "), [](const std::string& path) {
@@ -178,6 +178,15 @@ TEST(OlderFileVersions, OfSlamAreRead) {
     ASSERT_EQ(text.compare(0, 9, binaryMark("NGRAMSLM", version).now, 0, 9), 0) << file;
     EXPECT_NO_THROW(ngram_slam::SlamStateFile::load(folder + file, {})) << file;
   }
+}
+
+TEST(OlderFileVersions, DescriptionsWithoutCertaintiesAreReadAsSure) {
+  const std::string folder = kRoot + "/" + kSamples;
+  const auto old = hyselam_topo::loadDescription(folder + "description_1.xml");
+  ASSERT_EQ(old.connections.size(), 1u);
+  EXPECT_EQ(old.connections[0].side_certainty, 1.0);
+  EXPECT_EQ(hyselam_topo::loadDescription(folder + "description.xml").connections[0].side_certainty,
+            0.93);
 }
 
 std::string nameOf(const ::testing::TestParamInfo<Format>& info) {

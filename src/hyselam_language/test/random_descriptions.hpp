@@ -65,6 +65,10 @@ class RandomDescriptions {
     made.order = static_cast<std::size_t>(pick(4));
     if (pick(3) == 0) made.rank = pick(2) == 0 ? -1 - pick(3) : 1 + pick(30);
     if (pick(3) == 0) made.distance = std::uniform_real_distribution<double>(0.0, 1e3)(rng_);
+    if (pick(5) == 0)
+      made.seen_from = hyselam::Pose2{1.0 * pick(50), -2.0 * pick(50), 0.1 * pick(60) - 3.0};
+    if (pick(3) == 0) made.side_certainty = std::uniform_real_distribution<double>(0.1, 1.0)(rng_);
+    if (pick(3) == 0) made.order_certainty = std::uniform_real_distribution<double>(0.1, 1.0)(rng_);
     return made;
   }
 

@@ -101,8 +101,8 @@ TEST(DescriptionXml, RefusesOtherFiles) {
   expectError(errorOf("<description/>"), {"<description>", "this is no description"});
   expectError(errorWith("urn:hyselam:description:1", "urn:hyselam:topological_map:1"),
               {"line 2", "this is no description"});
-  expectError(errorWith("version=\"1\" robot", "version=\"2\" robot"),
-              {"has version 2, this program reads 1; it was written by a newer HySeLAM"});
+  expectError(errorWith("version=\"1\" robot", "version=\"3\" robot"),
+              {"has version 3, this program reads 1 to 2; it was written by a newer HySeLAM"});
   expectError(errorOf("<!DOCTYPE a [<!ENTITY b \"c\">]><a>&b;</a>"), {"not allowed"});
   expectError(errorOf(std::string("<a>\0</a>", 8)), {"not UTF-8"});
   expectError(errorOf("<a>\xff</a>"), {"not UTF-8"});

@@ -91,6 +91,8 @@ inline Instance wild(std::uint64_t seed, int names, int places) {
     c.side = dice.chance(0.7) ? static_cast<Side>(dice.whole(1, 4)) : Side::kUnknown;
     for (const auto& other : out.building.connections)
       c.order += other.from == c.from && other.side == c.side;
+    if (dice.chance(0.3)) c.side_certainty = dice.real(0.4, 1.0);
+    if (dice.chance(0.3)) c.order_certainty = dice.real(0.4, 1.0);
     if (!dice.chance(0.1)) out.building.connections.push_back(c);
   }
   if (names >= 3 && dice.chance(0.3)) {

@@ -106,6 +106,41 @@ TEST(TopoMergUnseen, ATrueSentenceAboutAnUnseenRoomMovesNoName) {
   }
 }
 
+TEST(TopoMergCertainty, AStatementThatIsNotSureWeighsAsItsOdds) {
+  const FitnessParams weights;
+  const double all = [] {
+    Corridor c;
+    c.add(2, Side::kLeft);
+    return solveExact(c.problem(), {}).scale;
+  }();
+  const auto lost = [&](double certainty) {
+    Corridor c;
+    c.add(2, Side::kLeft).side_certainty = certainty;
+    return (c.value({kCorridor, 2}) - c.value({kCorridor, 7})) * all;
+  };
+  EXPECT_NEAR(weights.orientations, lost(1.0), 1e-9);
+  EXPECT_NEAR(std::log(0.9 / 0.1), lost(0.9), 1e-9);
+  EXPECT_NEAR(0.0, lost(0.5), 1e-9);
+  EXPECT_NEAR(0.0, lost(0.2), 1e-9) << "what is likelier wrong says nothing, not the contrary";
+}
+
+TEST(TopoMergCertainty, SureStatementsWinOverThoseThatAreNot) {
+  Corridor c = allTold();
+  for (DescribedPlace& place : c.building.places) place.area.reset();
+  // Rooms 3 and 4 told in the other order, not surely; their numbers for sure.
+  std::swap(c.building.connections[1].order, c.building.connections[2].order);
+  c.building.connections[1].order_certainty = 0.6;
+  c.building.connections[2].order_certainty = 0.6;
+  c.building.connections[3].order_certainty = 0.6;
+  c.relate(RelationKind::kOpposite, 3, 8);
+  c.relate(RelationKind::kOpposite, 4, 9);
+  EXPECT_EQ(3u, c.placeOf(3));
+  EXPECT_EQ(4u, c.placeOf(4));
+  for (DescribedConnection& each : c.building.connections) each.order_certainty = 1.0;
+  c.building.relations.clear();
+  EXPECT_EQ(4u, c.placeOf(3));
+}
+
 TEST(TopoMergUnseen, NoPlaceIsAnAnswerWithItsOwnCost) {
   Corridor c;
   c.add(2, Side::kLeft);

@@ -111,7 +111,8 @@ bool operator==(const DescribedPlace& a, const DescribedPlace& b) {
 
 bool operator==(const DescribedConnection& a, const DescribedConnection& b) {
   const auto all = [](const DescribedConnection& c) {
-    return std::tie(c.from, c.to, c.side, c.order, c.rank, c.distance);
+    return std::tie(c.from, c.to, c.side, c.order, c.rank, c.distance, c.side_certainty,
+                    c.order_certainty);
   };
   return all(a) == all(b) && areEqual(a.seen_from, b.seen_from);
 }
@@ -168,6 +169,8 @@ void checkDescription(const DescribedBuilding& building, const std::string& sour
     const auto& distance = connection.distance;
     require(!distance || (*distance >= 0.0 && *distance <= kMaxDistance),
             "a connection is at no such distance");
+    for (const double certainty : {connection.side_certainty, connection.order_certainty})
+      require(certainty > 0.0 && certainty <= 1.0, "a connection has no such certainty");
     require(!connection.seen_from || connection.seen_from->isFinite(),
             "a connection was seen from nowhere");
     require(joined.insert(std::minmax(connection.from, connection.to)).second,

@@ -2,6 +2,8 @@
 
 #include <tinyxml2.h>
 
+#include <algorithm>
+
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/format_version.hpp"
@@ -12,7 +14,18 @@ namespace hyselam_topo {
 namespace {
 
 constexpr char kNamespace[] = "urn:hyselam:description:1";
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;  // 1 has no certainties
+
+/// The oldest version that holds it, so that older programs read what they can.
+int versionOf(const DescribedBuilding& building) {
+  const auto& all = building.connections;
+  return std::all_of(all.begin(), all.end(),
+                     [](const DescribedConnection& each) {
+                       return each.side_certainty == 1.0 && each.order_certainty == 1.0;
+                     })
+             ? 1
+             : kVersion;
+}
 
 class Writer {
  public:
@@ -20,7 +33,7 @@ class Writer {
     out_.PushHeader(false, true);
     out_.OpenElement("description");
     attribute("xmlns", kNamespace);
-    attribute("version", std::to_string(kVersion));
+    attribute("version", std::to_string(versionOf(building)));
     if (building.robot_place) attribute("robot_place", *building.robot_place);
     if (building.place_count) attribute("place_count", std::to_string(*building.place_count));
     for (const DescribedPlace& place : building.places) write(place);
@@ -78,6 +91,10 @@ class Writer {
     attribute("order", std::to_string(connection.order));
     attribute("rank", connection.rank);
     attribute("distance", connection.distance);
+    if (connection.side_certainty != 1.0)
+      attribute("side_certainty", std::optional(connection.side_certainty));
+    if (connection.order_certainty != 1.0)
+      attribute("order_certainty", std::optional(connection.order_certainty));
     attribute(connection.seen_from);
     out_.CloseElement();
   }
@@ -149,6 +166,8 @@ DescribedConnection readConnection(hyselam::XmlElement& e) {
   connection.order = static_cast<std::size_t>(order);
   connection.rank = count(e, "rank");
   if (e.has("distance")) connection.distance = e.number("distance");
+  if (e.has("side_certainty")) connection.side_certainty = e.number("side_certainty");
+  if (e.has("order_certainty")) connection.order_certainty = e.number("order_certainty");
   connection.seen_from = readView(e);
   e.finish();
   return connection;
@@ -176,8 +195,8 @@ DescribedBuilding readDescription(hyselam::XmlElement& e) {
     e.fail("this is no description: the first element must be <description xmlns=\"" +
            std::string(kNamespace) + "\">");
   }
-  if (e.text("version") != std::to_string(kVersion)) {
-    e.fail(hyselam::versionRefusal(e.text("version"), {kVersion, kVersion}));
+  if (e.text("version") != "1" && e.text("version") != std::to_string(kVersion)) {
+    e.fail(hyselam::versionRefusal(e.text("version"), {1, kVersion}));
   }
   DescribedBuilding building;
   if (e.has("robot_place")) building.robot_place = e.id("robot_place");

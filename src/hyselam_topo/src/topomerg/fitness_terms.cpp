@@ -67,7 +67,8 @@ void FitnessTerms::listClauses(const FitnessParams& params) {
                        r.looked});
   if (by_doors && params.orders > 0.0)
     for (const MatchProblem::DescribedOrder& o : problem.orders)
-      clauses.push_back({What::kOrder, {}, o.first, o.then, o.from, false, o.turn, 0.0, 0.0, {}});
+      clauses.push_back(
+          {What::kOrder, {}, o.first, o.then, o.from, false, o.turn, 0.0, 0.0, {}, {}, o.strength});
   if (by_doors && params.numbers > 0.0) {
     for (const MatchProblem::DescribedNumber& n : problem.numbers) {
       const bool rank = n.rank != 0;
@@ -217,9 +218,9 @@ double FitnessTerms::doorLoss(const MatchProblem::DescribedSide& side, const Pla
     least = std::min(least, deviation(side, bearing, heading));
   };
   forEachPassage(here, there, consider);
-  if (least < kNoDoor) return throughDoor(least);
+  if (least < kNoDoor) return throughDoor(side, least);
   forEachWall(here, there, consider);
-  return least < kNoDoor ? throughWall(least) : weight(Term::kSide);
+  return least < kNoDoor ? throughWall(side, least) : sideWeight(side);
 }
 
 double FitnessTerms::minDoorLoss(const MatchProblem::DescribedSide& side, const PlaceSet& from,
@@ -230,7 +231,7 @@ double FitnessTerms::minDoorLoss(const MatchProblem::DescribedSide& side, const 
   forEachWall(from, to, [&](const MatchProblem::Passage& p) {
     least = std::min(least, deviation(side, p.bearing, heading));
   });
-  return least < kNoDoor ? std::min(doors, throughWall(least)) : doors;
+  return least < kNoDoor ? std::min(doors, throughWall(side, least)) : doors;
 }
 
 int FitnessTerms::missingInRow(const MatchProblem::DescribedSide& side,
@@ -262,25 +263,25 @@ double FitnessTerms::rankShare(const MatchProblem::DescribedSide& side, int miss
 
 double FitnessTerms::rankLoss(const MatchProblem::DescribedSide& side, const PlaceSet& from,
                               const PlaceSet& to) const {
-  if (side.before + side.after == 0 || weight(Term::kRank) <= 0.0) return 0.0;
+  if (side.before + side.after == 0 || rankWeight(side) <= 0.0) return 0.0;
   int least = side.before + side.after;
   forEachDoor(from, to, [&](const MatchProblem::Passage& own) {
     least = std::min(least, missingInRow(side, own, from));
   });
-  return weight(Term::kRank) * rankShare(side, least);
+  return rankWeight(side) * rankShare(side, least);
 }
 
 double FitnessTerms::absentSideLoss(const MatchProblem::DescribedSide& side, const VertexSet& from,
                                     const VertexSet& to) const {
   const double least = absent_share * missingSideLoss(side);
-  const bool in_row = side.before + side.after > 0 && weight(Term::kRank) > 0.0;
+  const bool in_row = side.before + side.after > 0 && rankWeight(side) > 0.0;
   if (!by_doors || !in_row || from.empty() || !to.empty()) return least;
   int missing = side.before + side.after;
   forEachHiddenDoor(from.members, side.side_angle, [&](const MatchProblem::Passage& own) {
     missing = std::min(missing, missingInRow(side, own, from.members));
   });
-  return absentLoss(Term::kSide) +
-         weight(Term::kRank) * std::max(absent_share, rankShare(side, missing));
+  return absent_share * sideWeight(side) +
+         rankWeight(side) * std::max(absent_share, rankShare(side, missing));
 }
 
 std::vector<VertexSet> verticesOf(const MatchProblem& problem, const Assignment& assignment) {

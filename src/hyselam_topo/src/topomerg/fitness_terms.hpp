@@ -83,6 +83,7 @@ class FitnessTerms {
     /// Where the robot stood when a number, distance or relation was told; nothing: not known.
     std::optional<hyselam::Point2> position;
     std::optional<double> looked = std::nullopt;  ///< of kAfter: where it looked then
+    double strength = 1.0;                        ///< share of the weight
   };
 
   FitnessTerms(const MatchProblem& problem, const FitnessParams& params);
@@ -97,6 +98,16 @@ class FitnessTerms {
   double weight(Term term) const { return weights_[static_cast<std::size_t>(term)]; }
   /// A loss of 1 / scale makes an assignment e times less likely; 0: nobody knows.
   double scale() const { return scale_; }
+  /// Of one statement that may be weaker than others.
+  double sideWeight(const MatchProblem::DescribedSide& side) const {
+    return side.strength * weight(Term::kSide);
+  }
+  double rankWeight(const MatchProblem::DescribedSide& side) const {
+    return side.strength * weight(Term::kRank);
+  }
+  double clauseWeight(const Clause& clause) const {
+    return clause.strength * weight(termOf(clause.what));
+  }
   /// Of a statement about a name without vertices.
   double absentLoss(Term term) const { return absent_share * weight(term); }
 
@@ -153,7 +164,7 @@ class FitnessTerms {
       return doorLoss(side, from.members, to.members, heading) +
              rankLoss(side, from.members, to.members);
     if (!comparable(from, to)) return missingSideLoss(side);
-    return weight(Term::kSide) * deviation(side, bearing(from, to), heading) / kPi;
+    return sideWeight(side) * deviation(side, bearing(from, to), heading) / kPi;
   }
   /// Of the door that fits best, or the wall where there is no door.
   double doorLoss(const MatchProblem::DescribedSide& side, const PlaceSet& from, const PlaceSet& to,
@@ -171,7 +182,7 @@ class FitnessTerms {
                         const VertexSet& to) const;
   /// Loss of a side that cannot be compared.
   double missingSideLoss(const MatchProblem::DescribedSide& side) const {
-    return weight(Term::kSide) + (side.before + side.after > 0 ? weight(Term::kRank) : 0.0);
+    return sideWeight(side) + (side.before + side.after > 0 ? rankWeight(side) : 0.0);
   }
   /// All passages from one set into the other: visit(passage).
   template <typename Visit>
@@ -188,9 +199,11 @@ class FitnessTerms {
     return std::min(1.0, std::max(0.0, (off - kRightWithin) / (kWrongFrom - kRightWithin)));
   }
   /// Of the sides' loss through a door, or through a wall that may hide one.
-  double throughDoor(double off) const { return weight(Term::kSide) * lostShare(off); }
-  double throughWall(double off) const {
-    return weight(Term::kSide) * (1.0 - closed_door_credit * (1.0 - lostShare(off)));
+  double throughDoor(const MatchProblem::DescribedSide& side, double off) const {
+    return sideWeight(side) * lostShare(off);
+  }
+  double throughWall(const MatchProblem::DescribedSide& side, double off) const {
+    return sideWeight(side) * (1.0 - closed_door_credit * (1.0 - lostShare(off)));
   }
   /// The same of walls that closed doors may be in.
   template <typename Visit>
@@ -220,11 +233,11 @@ class FitnessTerms {
     const VertexSet &a = of(clause.a), &b = of(clause.b);
     const VertexSet* c = clause.c >= 0 ? &of(clause.c) : nullptr;
     if (clause.what == Clause::What::kNumber && a.empty() && !b.empty())
-      return weight(Term::kNumber) * std::max(absent_share, 1.0 - unseenNumberValue(clause, b));
+      return clauseWeight(clause) * std::max(absent_share, 1.0 - unseenNumberValue(clause, b));
     if (a.empty() || b.empty() || (c != nullptr && c->empty()))
-      return absentLoss(termOf(clause.what));
+      return absent_share * clauseWeight(clause);
     const double value = clauseValue(clause, a, b, c);
-    return weight(termOf(clause.what)) * (clause.denied ? value : 1.0 - value);
+    return clauseWeight(clause) * (clause.denied ? value : 1.0 - value);
   }
 
   /// Directions that are off by up to this are on the described side, from that on another [rad].

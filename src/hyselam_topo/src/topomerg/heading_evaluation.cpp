@@ -14,13 +14,14 @@ constexpr double kEqualDeviation = 1e-12;
 /// Where one described side is right.
 struct RightHeadings {
   std::vector<double> headings;
-  double share = 1.0;  ///< of the side's value, that it has there
+  double share = 1.0;   ///< of the side's value, that it has there
+  double weight = 1.0;  ///< of the side
 };
 
 /// The best heading, and what the sides lose there.
 struct BestHeading {
   double heading = 0.0;
-  double lost = 0.0;  ///< sum of the shares of the sides' values
+  double lost = 0.0;  ///< sum of what the sides lose
   double off = 0.0;   ///< sum of the deviations
 };
 
@@ -36,7 +37,7 @@ BestHeading bestHeading(const FitnessTerms& terms, const std::vector<RightHeadin
       double off = kPi;
       for (const double right : side.headings)
         off = std::min(off, std::abs(wrapAngleOnce(right - value)));
-      now.lost += side.share * terms.lostShare(off);
+      now.lost += side.weight * side.share * terms.lostShare(off);
       now.off += side.share * off;
     }
     const bool better =
@@ -100,11 +101,12 @@ double evaluate(const FitnessTerms& terms, const std::vector<VertexSet>& names, 
       continue;
     }
     if (terms.by_doors) loss += terms.rankLoss(s, of(s.from).members, of(s.to).members);
-    loss += terms.weight(Term::kSide) * (1.0 - right.share);
+    right.weight = terms.sideWeight(s);
+    loss += right.weight * (1.0 - right.share);
     comparable.push_back(std::move(right));
   }
   const BestHeading best = bestHeading(terms, comparable);
-  loss += terms.weight(Term::kSide) * best.lost;
+  loss += best.lost;
   if (heading != nullptr) *heading = best.heading;
   return 1.0 - loss;
 }

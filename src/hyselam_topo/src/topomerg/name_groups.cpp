@@ -41,8 +41,8 @@ MatchProblem restricted(const MatchProblem& problem, const std::vector<int>& nam
   }
   for (const MatchProblem::DescribedSide& s : problem.sides)
     if (number[at(s.from)] >= 0 && number[at(s.to)] >= 0)
-      part.sides.push_back(
-          {number[at(s.from)], number[at(s.to)], s.angle, s.side_angle, s.turn, s.before, s.after});
+      part.sides.push_back({number[at(s.from)], number[at(s.to)], s.angle, s.side_angle, s.turn,
+                            s.before, s.after, s.strength});
   for (int& fixed : part.confirmed_name) fixed = fixed >= 0 ? number[at(fixed)] : -1;
   return part;
 }

@@ -44,7 +44,8 @@ NameTables::NameTables(const MatchProblem& problem, const FitnessTerms& terms)
           terms.weight(Term::kEdge) + (s >= 0 ? terms.missingSideLoss(problem.sides[at(s)]) : 0.0);
       absent_loss_[at(i * n_ + j)] = terms.absent_share * missing_edge_loss_[at(i * n_ + j)];
       shared_wall_loss_[at(i * n_ + j)] =
-          terms.describedEdgeLoss(Contact::kWall) + (s >= 0 ? terms.throughWall(0.0) : 0.0);
+          terms.describedEdgeLoss(Contact::kWall) +
+          (s >= 0 ? terms.throughWall(problem.sides[at(s)], 0.0) : 0.0);
       if (problem.areConnected(at(i), at(j)) && precedes(j, i)) borne_edges_[at(i)].push_back(j);
     }
   }

@@ -218,7 +218,7 @@ double NodeBound::addLastSide(double before, double edge, int number, int name, 
         number, from_set, s, [&] { return terms_.doorLoss(side, from, to, losses_.heading()); });
     return before + edge + (doors + terms_.rankLoss(side, from, to));
   }
-  const double weight = terms_.weight(Term::kSide);
+  const double weight = terms_.sideWeight(side);
   if (!own.hasCenter() || !other.hasCenter()) return before + (edge + weight);
   const double bearing = from_set ? bearings_[s] : reverseBearing(bearings_[s]);
   return before + (edge + weight * terms_.deviation(side, bearing, losses_.heading()) / kPi);
@@ -261,7 +261,7 @@ double NodeBound::partialEdgeLoss(int name, std::size_t set, const PartialSet& p
                              : terms_.minDoorLoss(side, reach, view.members, losses_.heading());
            });
   }
-  const double weight = terms_.weight(Term::kSide);
+  const double weight = terms_.sideWeight(side);
   if (!view.has_position) return weight;
   const double bearing = from_set ? view.seen.bearing : reverseBearing(view.seen.bearing);
   const Heading heading{losses_.heading().value, losses_.heading().slack + view.seen.slack};

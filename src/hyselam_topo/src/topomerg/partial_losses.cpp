@@ -148,7 +148,7 @@ double PartialLosses::partialSideLoss(const MatchProblem::DescribedSide& side,
     return side.from == other ? terms_.minDoorLoss(side, v.members, reach, heading_)
                               : terms_.minDoorLoss(side, reach, v.members, heading_);
   }
-  const double weight = terms_.weight(Term::kSide);
+  const double weight = terms_.sideWeight(side);
   if (!v.hasCenter() || !(v.neighbors.intersects(partial.open) || partial.has.touches(v)))
     return weight;
   const BearingInterval seen = bearingTo(v.x(), v.y(), partial);

@@ -92,6 +92,15 @@ std::optional<hyselam::Pose2> lastView(const DescribedBuilding& building) {
   return last;
 }
 
+/// As many nats as a side and an order weigh by default (FitnessParams): what is at least so sure
+/// counts in full, what is as good as a guess counts nothing.
+constexpr double kSureSide = 4.8, kSureOrder = 2.4;
+
+double strengthOf(double certainty, double sure) {
+  if (certainty >= 1.0) return 1.0;
+  return std::clamp(std::log(certainty / (1.0 - certainty)) / sure, 0.0, 1.0);
+}
+
 /// The places on one side of a place, in the described order.
 void addRow(const std::vector<const DescribedConnection*>& row, const Numbers& name,
             MatchProblem* out) {
@@ -117,11 +126,13 @@ void addRow(const std::vector<const DescribedConnection*>& row, const Numbers& n
     const double side_angle = angleOf(side) + viewAngle(row[k]->seen_from, *out);
     out->sides.push_back({name(row[k]->from, "description"), name(row[k]->to, "description"),
                           hyselam::normalizeAngle(side_angle + sign * offset),
-                          hyselam::normalizeAngle(side_angle), turn, earlier, later});
+                          hyselam::normalizeAngle(side_angle), turn, earlier, later,
+                          strengthOf(row[k]->side_certainty, kSureSide)});
     if (row[k]->rank) continue;
     if (previous != nullptr && before(previous, row[k]))
-      out->orders.push_back(
-          {out->sides.back().from, name(previous->to, "description"), out->sides.back().to, turn});
+      out->orders.push_back({out->sides.back().from, name(previous->to, "description"),
+                             out->sides.back().to, turn,
+                             strengthOf(row[k]->order_certainty, kSureOrder)});
     previous = row[k];
   }
 }

@@ -82,6 +82,10 @@ struct DescribedConnection {
   /// Where the robot stood and looked when side, number or distance were told, in the frame of the
   /// map; nothing: not known.
   std::optional<hyselam::Pose2> seen_from = std::nullopt;
+  /// How probable it is that the side was meant so, > 0 .. 1, ...
+  double side_certainty = 1.0;
+  /// ... and that it comes behind the one before it in its row.
+  double order_certainty = 1.0;
 };
 
 /// What people say of places besides connections.
@@ -133,7 +137,7 @@ bool operator==(const DescribedBuilding& a, const DescribedBuilding& b);
 /// Throws hyselam::InputError with `source` and the part that is wrong, unless: ids are there and
 /// unique, names and aliases are not empty, UTF-8 and without control characters, sizes finite and
 /// > 0, parts >= 1, connections and relations join different places of the description, two places
-/// are connected at most once.
+/// are connected at most once, certainties are > 0 and at most 1.
 void checkDescription(const DescribedBuilding& building, const std::string& source);
 
 /// How sure it is, from something else than words (objects, pictures), that a place has a name.

@@ -47,9 +47,10 @@ struct MatchProblem {
     /// side was told, by that more; spread in the order described.
     double angle = 0.0;
     double side_angle = 0.0;  ///< of the side, not spread
-    double turn = 0.0;  ///< from the direction through the doors to that of the described order
-    int before = 0;     ///< as many others were described before it on that side, ...
-    int after = 0;      ///< and as many after it; both without those whose number was told
+    double turn = 0.0;      ///< from the direction through the doors to that of the described order
+    int before = 0;         ///< as many others were described before it on that side, ...
+    int after = 0;          ///< and as many after it; both without those whose number was told
+    double strength = 1.0;  ///< share of the weights of a side and of a place in a row, 0 .. 1
   };
   /// "The second door on the left", "ten metres ahead": where along `from` the door to `to` is.
   struct DescribedNumber {
@@ -68,7 +69,8 @@ struct MatchProblem {
     int from = 0;  ///< numbers of the names: of the place that both are seen from, ...
     int first = 0;
     int then = 0;
-    double turn = 0.0;  ///< from the direction through their doors to that from first to then
+    double turn = 0.0;      ///< from the direction through their doors to that from first to then
+    double strength = 1.0;  ///< share of an order's weight, 0 .. 1
   };
   /// A way out of a vertex, or a wall where a closed door may be one.
   struct Passage {
