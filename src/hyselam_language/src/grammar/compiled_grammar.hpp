@@ -142,6 +142,13 @@ struct IntentInfo {
   std::vector<Automaton> patterns;
 };
 
+/// "On the left", "on the other side", "across from it", "coming back".
+struct TourWords {
+  WordSet left, right, side, other, same, across, back;
+  WordSet order;  ///< "after", "before", "past", ...
+  WordSet and_;   ///< between clauses
+};
+
 struct CompiledGrammar {
   std::string language;
   std::string title;
@@ -158,6 +165,8 @@ struct CompiledGrammar {
   WordSet reflexive, reflexive_after;
   /// Folded: "here"; "this", where one of the third stands behind it: "door".
   WordSet here_words, pointing_words, pointed_words;
+  /// How somebody who shows the robot round speaks of the sides of a corridor (folded words).
+  TourWords tour_words;
   /// Those before and after that have two words or more, by their first word.
   std::unordered_map<std::string, std::vector<Phrase>> long_fillers;
   /// Around a statement that ends with a question mark: "can you note that", "ok"; the longest

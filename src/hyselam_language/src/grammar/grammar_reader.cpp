@@ -100,6 +100,7 @@ class Reader {
         {"here_words", [&](const GrammarNode& node) { addFolded(node, &g.here_words); }},
         {"pointing_words", [&](const GrammarNode& node) { addFolded(node, &g.pointing_words); }},
         {"pointed_words", [&](const GrammarNode& node) { addFolded(node, &g.pointed_words); }},
+        {"tour_words", [&](const GrammarNode& node) { readTourWords(node); }},
         {"list_ends",
          [&](const GrammarNode& node) {
            for (const std::string& word : node.texts()) g.list_ends.insert(word);
@@ -197,6 +198,19 @@ class Reader {
     for (const std::string& text : node.texts()) {
       for (const std::string& phrase : expanded(node, text)) all->push_back(splitWords(phrase));
     }
+  }
+
+  void readTourWords(const GrammarNode& node) {
+    TourWords& words = grammar_->tour_words;
+    const std::map<std::string, WordSet*> keys{
+        {"left", &words.left},   {"right", &words.right}, {"side", &words.side},
+        {"other", &words.other}, {"same", &words.same},   {"across", &words.across},
+        {"back", &words.back},   {"order", &words.order}, {"and", &words.and_}};
+    node.each([&](const std::string& key, const GrammarNode& all) {
+      const auto found = keys.find(key);
+      if (found == keys.end()) all.fail("this key is not known");
+      addFolded(all, found->second);
+    });
   }
 
   void readListSeparators(const GrammarNode& node) {

@@ -94,15 +94,7 @@ std::string articleBefore(const Grammar& grammar, const HeardText& text, std::si
 }
 
 FactArgument argumentOf(const Grammar& grammar, const HeardText& text, const Mention& mention) {
-  FactArgument argument{text.textOf(mention), articleBefore(grammar, text, mention.begin),
-                        text.rangeOf(mention)};
-  const bool begins = mention.begin == 0 || text.endsSentence(mention.begin - 1);
-  char& first = argument.text.front();
-  if (begins && text.isNoun(static_cast<std::ptrdiff_t>(mention.begin)) && first >= 'A' &&
-      first <= 'Z') {
-    first = static_cast<char>(first - 'A' + 'a');
-  }
-  return argument;
+  return {text.nameOf(mention), articleBefore(grammar, text, mention.begin), text.rangeOf(mention)};
 }
 
 /// "between" comes as two pairs of one thing: one fact with both grounds.

@@ -100,5 +100,14 @@ std::string HeardText::textOf(const Mention& mention) const {
   return text_.substr(range.begin, range.end - range.begin);
 }
 
+std::string HeardText::nameOf(const Mention& mention) const {
+  std::string name = textOf(mention);
+  const bool begins = mention.begin == 0 || endsSentence(mention.begin - 1);
+  char& first = name.front();
+  if (begins && isNoun(static_cast<std::ptrdiff_t>(mention.begin)) && first >= 'A' && first <= 'Z')
+    first = static_cast<char>(first - 'A' + 'a');
+  return name;
+}
+
 }  // namespace language
 }  // namespace hyselam_topo

@@ -36,6 +36,8 @@ class HeardText {
   bool endsSentence(std::size_t at) const { return ends_[at]; }
   TextRange rangeOf(const Mention& mention) const;
   std::string textOf(const Mention& mention) const;
+  /// As it stands within a sentence: "kitchen" where one begins with "Kitchen".
+  std::string nameOf(const Mention& mention) const;
 
  private:
   void add(const ReaderLexicon& lexicon, Token token, std::string word, bool ends);

@@ -125,7 +125,8 @@ void checkTags(const std::string& source, const LinearClassifier& tagger) {
   }
 }
 
-FoundMentions findMentions(const LinearClassifier& tagger, const HeardText& text) {
+FoundMentions findMentions(const LinearClassifier& tagger, const HeardText& text,
+                           const std::vector<Features>& more, double eager) {
   const auto& tags = tagger.classes();
   const std::size_t count = text.tokens().size(), kinds = tags.size();
   constexpr double kNever = -std::numeric_limits<double>::infinity();
@@ -139,7 +140,9 @@ FoundMentions findMentions(const LinearClassifier& tagger, const HeardText& text
   FoundMentions found;
   std::vector<std::vector<Cell>> cells(count, std::vector<Cell>(kinds));
   for (std::size_t at = 0; at < count; ++at) {
-    const std::vector<double> own = tagger.scores(tokenFeatures(text, at));
+    Features features = tokenFeatures(text, at);
+    if (!more.empty()) features.insert(features.end(), more[at].begin(), more[at].end());
+    const std::vector<double> own = tagger.scores(features);
     found.name_probabilities.push_back(text.endsSentence(at) ? 0.0 : nameProbability(tags, own));
     for (std::size_t before = 0; before < kinds; ++before) {
       const double so_far =
@@ -153,8 +156,9 @@ FoundMentions findMentions(const LinearClassifier& tagger, const HeardText& text
       for (std::size_t tag = 0; tag < kinds; ++tag) {
         if ((text.endsSentence(at) && tag != outside) || !mayFollow(tags[before], tags[tag]))
           continue;
-        const double sum =
-            so_far + (text.endsSentence(at) ? 0.0 : std::log(std::max(p[tag], 1e-12)));
+        const double sum = so_far +
+                           (text.endsSentence(at) ? 0.0 : std::log(std::max(p[tag], 1e-12))) +
+                           (tag == outside ? 0.0 : eager);
         if (sum > cells[at][tag].best) cells[at][tag] = {sum, p[tag], before};
       }
     }

@@ -30,7 +30,10 @@ struct FoundMentions {
   /// That each word, seen without the tag before it, belongs to a mention.
   std::vector<double> name_probabilities;
 };
-FoundMentions findMentions(const LinearClassifier& tagger, const HeardText& text);
+/// `more`: further features of each word; empty: none. `eager`: as many nats a word counts more as
+/// part of a name than the tagger has it.
+FoundMentions findMentions(const LinearClassifier& tagger, const HeardText& text,
+                           const std::vector<Features>& more = {}, double eager = 0.0);
 
 }  // namespace language
 }  // namespace hyselam_topo

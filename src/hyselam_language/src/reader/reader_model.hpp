@@ -4,35 +4,15 @@
 #include <string>
 
 #include "linear_classifier.hpp"
+#include "model_text.hpp"
+#include "odds.hpp"
 #include "reader_lexicon.hpp"
 
 namespace hyselam_topo {
 namespace language {
 
-/// log(p / (1 - p)), kept finite.
-double logOdds(double probability);
-
-/// How probable it is that something read is right, by a logistic regression over what the
-/// classifiers say of it and of the whole text, were all their decisions independent.
-struct Odds {
-  double own = 1.0;
-  double whole = 0.0;
-  double offset = 0.0;
-
-  double of(double own_log_odds, double whole_log_odds) const;
-  double probability(double own_p, double whole_p) const;
-};
-
-/// What a model says of itself, each a line of its head.
-struct ReaderOrigin {
-  std::string language;
-  std::string command;   ///< that made it
-  std::string data;      ///< that it was learnt from
-  std::string left_out;  ///< how it fares on writers whom it was not learnt from
-};
-
 struct ReaderModel {
-  ReaderOrigin origin;
+  ModelOrigin origin;
   ReaderLexicon lexicon;
   LinearClassifier tagger;     ///< of words: which belong to mentions
   LinearClassifier of_one;     ///< of a mention: what is stated of it alone

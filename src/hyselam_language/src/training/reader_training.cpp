@@ -77,7 +77,18 @@ void addExamples(const CompiledGrammar& grammar, const ReaderLexicon& lexicon,
   }
 }
 
-/// Logistic regression by Newton's method.
+/// Negative logarithm of how likely what was right is.
+double lossOf(const std::vector<ReaderEvaluation::Guess>& guesses, const Eigen::Vector3d& w) {
+  double loss = 0.0;
+  for (const ReaderEvaluation::Guess& each : guesses) {
+    const double z = w.dot(Eigen::Vector3d(each.own, each.whole, 1.0));
+    loss += std::log1p(std::exp(-std::abs(z))) + std::max(0.0, each.right ? -z : z);
+  }
+  return loss;
+}
+
+}  // namespace
+
 Odds fittedOdds(const std::vector<ReaderEvaluation::Guess>& guesses) {
   constexpr double kRidge = 1e-3;  // where a variable says nothing
   Eigen::Vector3d w(1.0, 0.0, 0.0);
@@ -90,12 +101,14 @@ Odds fittedOdds(const std::vector<ReaderEvaluation::Guess>& guesses) {
       gradient += ((each.right ? 1.0 : 0.0) - p) * x;
       curvature += p * (1.0 - p) * x * x.transpose();
     }
-    w += curvature.ldlt().solve(gradient);
+    const Eigen::Vector3d step = curvature.ldlt().solve(gradient);
+    // A whole step may go too far where most is sure.
+    double share = 1.0;
+    while (share > 1e-6 && lossOf(guesses, w + share * step) > lossOf(guesses, w)) share *= 0.5;
+    w += share * step;
   }
   return {w[0], w[1], w[2]};
 }
-
-}  // namespace
 
 ReaderModel trainReader(const Grammar& grammar, const ReaderLexicon& lexicon,
                         const std::vector<const AnnotatedText*>& texts,

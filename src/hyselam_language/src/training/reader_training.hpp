@@ -53,6 +53,9 @@ ReaderEvaluation evaluateReader(const Grammar& grammar, const ReaderLexicon& lex
                                 const std::vector<const AnnotatedText*>& texts,
                                 const ReaderTrainingParams& params);
 
+/// Logistic regression by Newton's method.
+Odds fittedOdds(const std::vector<ReaderEvaluation::Guess>& guesses);
+
 /// Fits the odds so that of what is told as p = x a share x is right.
 void calibrate(const ReaderEvaluation& evaluation, ReaderModel* model);
 

@@ -81,8 +81,8 @@ void print(const ReaderEvaluation& evaluation, const ReaderModel& calibrated, bo
 }
 
 /// What the model says of itself.
-ReaderOrigin originOf(const Options& o, std::size_t sentences, const ReaderEvaluation& evaluation) {
-  ReaderOrigin origin;
+ModelOrigin originOf(const Options& o, std::size_t sentences, const ReaderEvaluation& evaluation) {
+  ModelOrigin origin;
   origin.language = o.language;
   std::ostringstream command;
   command << "train_fact_reader FILE... --language " << o.language << " --nouns NOUNS --cost "

@@ -1,5 +1,6 @@
 // parse_description (TEXT | -) --out HUMAN.xml: what people tell about a building, as a graph.
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <iterator>
@@ -10,6 +11,7 @@
 #include "hyselam_language/building/description_builder.hpp"
 #include "hyselam_language/building/description_xml.hpp"
 #include "hyselam_language/grammar/topo_parser.hpp"
+#include "hyselam_language/reader/tour_reader.hpp"
 
 namespace {
 
@@ -134,6 +136,7 @@ struct Options {
   std::string text, out, language = "auto";
   std::vector<std::string> grammars, accepted;
   std::string speaker;
+  bool tour = false;
   hyselam_topo::DescriptionParams params;
 };
 
@@ -149,7 +152,9 @@ json resultOf(const ParsedText& parsed, const DescribedBuilding& building,
                                      {"side", toString(each.side)},
                                      {"order", each.order},
                                      {"rank", maybe(each.rank)},
-                                     {"distance", maybe(each.distance)}});
+                                     {"distance", maybe(each.distance)},
+                                     {"side_certainty", each.side_certainty},
+                                     {"order_certainty", each.order_certainty}});
   }
   result["relations"] = json::array();
   for (const auto& each : building.relations) {
@@ -180,7 +185,48 @@ json resultOf(const ParsedText& parsed, const DescribedBuilding& building,
   return result;
 }
 
+long percent(double probability) {
+  return std::lround(100.0 * probability);
+}
+
+void printRow(const char* side, const std::vector<hyselam_topo::TourRoom>& row) {
+  std::cout << side << ':';
+  const char* before = " ";
+  for (const hyselam_topo::TourRoom& room : row) {
+    std::cout << before << room.name << " (" << percent(room.side_certainty) << " %";
+    if (&room != &row.front())
+      std::cout << ", behind the one before " << percent(room.order_certainty) << " %";
+    std::cout << ')';
+    before = "; ";
+  }
+  std::cout << '\n';
+}
+
+/// Running talk as a tour along a corridor.
+json runTour(const Options& o) {
+  const Input input = inputOf(o.text);
+  if (!o.grammars.empty())
+    throw hyselam::InputError("--grammar", "", "the reader of tours knows the shipped ones only");
+  hyselam_topo::ParseOptions options;
+  options.language = o.language;
+  options.max_bytes = kMaxBytes;
+  const ParsedText parsed = hyselam_topo::TopoParser().parse(input.text, options);
+  const auto grammar = hyselam_topo::Grammar::shipped(parsed.language);
+  const hyselam_topo::ToldTour tour = hyselam_topo::TourReader::shipped(grammar).read(input.text);
+  if (tour.empty())
+    throw hyselam::InputError(input.name, "", "names no room: this is no tour of a building");
+  const DescribedBuilding building =
+      hyselam_topo::describeTour(tour, grammar.say("tour_corridor"));
+  hyselam_topo::saveXml(o.out, building);
+  std::cout << parsed.language << ": a tour past " << building.places.size() - 1 << " rooms -> "
+            << o.out << '\n';
+  printRow("left", tour.left);
+  printRow("right", tour.right);
+  return resultOf({parsed.language, {}}, building, {}, 0.0);
+}
+
 json run(const Options& o) {
+  if (o.tour) return runTour(o);
   using Clock = std::chrono::steady_clock;
   const Input input = inputOf(o.text);
   const hyselam_topo::TopoParser parser =
@@ -241,6 +287,10 @@ int main(int argc, char** argv) {
                  "do not take down what names no kind of place until it is accepted")
       ->capture_default_str();
   app.add_option("--accept-name", options.accepted, "names of places, whatever they look like");
+  app.add_flag("--tour", options.tour,
+               "read the text as running talk of somebody who shows the robot round, from the "
+               "beginning of a corridor: no sentence has to be understood, sides and order have a "
+               "certainty");
   app.add_option("--speaker", options.speaker, "who speaks: 'my office' is theirs");
   return hyselam::runTool(argc, argv, app, [&] { return run(options); });
 }

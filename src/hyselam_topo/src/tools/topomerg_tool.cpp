@@ -12,6 +12,7 @@
 #include "hyselam_topo/topomerg/topomerg.hpp"
 #include "hyselam_topo/topomerg/topomerg_names.hpp"
 #include "hyselam_topological_map/topological_map_xml.hpp"
+#include "place_and_name.hpp"
 
 namespace {
 
@@ -23,16 +24,7 @@ constexpr double kUncertaintyLimit = 2.0;
 /// "PLACE=NAME": the id of a place of the map and a name, or its id, of the description.
 std::pair<Id, Id> namedPlace(const std::string& option, const std::string& text,
                              const DescribedBuilding& building) {
-  const std::size_t sign = text.find('=');
-  if (sign == std::string::npos || sign == 0)
-    throw hyselam::InputError(option, text, "is not PLACE=NAME");
-  Id place = 0;
-  for (const char c : text.substr(0, sign)) {
-    if (c < '0' || c > '9' || place > 100000000)
-      throw hyselam::InputError(option, text, "does not begin with the id of a place");
-    place = place * 10 + static_cast<Id>(c - '0');
-  }
-  const std::string name = text.substr(sign + 1);
+  const auto [place, name] = placeAndName(option, text);
   for (const DescribedPlace& p : building.places) {
     bool same = p.name == name || std::to_string(p.id) == name;
     for (const std::string& alias : p.aliases) same = same || alias == name;

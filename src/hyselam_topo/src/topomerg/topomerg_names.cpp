@@ -6,6 +6,7 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/odds.hpp"
+#include "place_words.hpp"
 #include "solutions.hpp"
 
 namespace hyselam_topo {
@@ -169,16 +170,7 @@ AugmentedTopologicalMap withNames(const AugmentedTopologicalMap& map,
     const DescribedPlace* described =
         i < 0 ? nullptr : building.findPlace(problem.names[static_cast<std::size_t>(i)]);
     if (place == nullptr || described == nullptr) continue;
-    const bool confirmed = problem.confirmed_name[v] >= 0;
-    std::vector<PlaceTerm>& words = place->words;
-    words.erase(std::remove_if(words.begin(), words.end(),
-                               [](const PlaceTerm& word) { return !word.confirmed; }),
-                words.end());
-    for (const std::string& text : allNamesOf(*described)) {
-      const bool has = std::any_of(words.begin(), words.end(),
-                                   [&](const PlaceTerm& word) { return word.text == text; });
-      if (!has) words.push_back({text, confirmed});
-    }
+    merging::giveWords(allNamesOf(*described), problem.confirmed_name[v] >= 0, place);
   }
   return out;
 }
