@@ -235,8 +235,9 @@ class Localizer {
     SubmapBuilder submap;
     ShortTermLayer short_term;
     std::unique_ptr<BackgroundSearch> background;
-    double way = 0.0;                // [m] of motion, turns counted
-    std::optional<double> asked_at;  // on that way
+    double way = 0.0;                  // [m] of motion, turns counted
+    double asked_at = 0.0;             // on that way, when it was asked last
+    std::optional<double> waits_from;  // where the step to the next question begins; none: at once
     AlarmWatch alarm;
     AlarmWatch::Signs signs;            // since the last update
     std::optional<double> usual_match;  // average inlier ratio of scans with those before
