@@ -116,12 +116,14 @@ void LocalizerParams::describeHybrid(hyselam::ParameterVisitor& visit) {
   const Range ratio = Range::fromBelow(0.0, 1.0);
   visit.renamed("found_above", "found_inlier_ratio");
   visit("found_inlier_ratio", found_inlier_ratio, ratio, "",
-        "hybrid: share of inliers, averaged over about 1 m, that a place needs that was told, or that "
+        "hybrid: share of inliers, averaged over about 1 m, that a place needs that was told, or "
+        "that "
         "the search is not sure of; without submap_search: each");
   visit.renamed("lost_below", "lost_inlier_ratio");
-  visit("lost_inlier_ratio", lost_inlier_ratio, ratio, "",
-        "hybrid: below this share of inliers, averaged over about 1 m, the map is searched, and the "
-        "pose not relied on until that confirms it; without submap_search: lost");
+  visit(
+      "lost_inlier_ratio", lost_inlier_ratio, ratio, "",
+      "hybrid: below this share of inliers, averaged over about 1 m, the map is searched, and the "
+      "pose not relied on until that confirms it; without submap_search: lost");
   visit.renamed("lost_ratio", "lost_relative_ratio");
   visit("lost_relative_ratio", lost_relative_ratio, ratio, "",
         "hybrid: below this times its average over about 30 m the map is searched; without "
@@ -167,7 +169,7 @@ std::shared_ptr<const FsdMap> densityMap(const hyselam::OccupancyGrid& map,
 
 void Localizer::checkMap(const hyselam::OccupancyGrid& map, const LocalizerParams& params) {
   const hyselam::OccupancyGrid coarse = coarsenForDensities(map, params);
-  const auto free = [&](std::int8_t v) { return v >= 0 && v < params.map.thresholds.free_below; };
+  const auto free = [&](std::int8_t v) { return params.map.thresholds.isFree(v); };
   if (std::none_of(coarse.cells.begin(), coarse.cells.end(), free)) {
     throw hyselam::InputError("map", "", "has no free cell to put particles on");
   }
