@@ -25,6 +25,7 @@
 #include "fsd_localization/search/place_judge.hpp"
 #include "fsd_localization/search/probation.hpp"
 #include "fsd_localization/search/rival_watch.hpp"
+#include "fsd_localization/search/score_watch.hpp"
 #include "fsd_localization/search/short_term_layer.hpp"
 #include "hyselam_common/parameters.hpp"
 #include "hyselam_scan_matching/scan_odometry.hpp"
@@ -241,9 +242,7 @@ class Localizer {
     AlarmWatch alarm;
     AlarmWatch::Signs signs;            // since the last update
     std::optional<double> usual_match;  // average inlier ratio of scans with those before
-    std::optional<double> usual_score;  // average score of the pose with the last metres
-    double score_at = 0.0;              // on that way, when it was told last
-    bool fits_worse = false;            // then it was far below the average
+    ScoreWatch score;                   // of the tracked pose with the scans of the last metres
     RivalWatch rivals;                  // what was better than the tracked pose
     FollowedPlaces followed;            // while the robot is not found
     Probation probation;                // of a place found lately

@@ -20,9 +20,6 @@ constexpr double kCheckStep = 30.0;        // [m] at most between checks
 constexpr double kCheckLength = 5.0;       // [m] of scans of a check
 constexpr double kOneScan = 0.3;           // [m] a shorter submap is a scan: SubmapBuilder's step
 constexpr double kUsual = 0.75;            // of the usual share of inliers: less is unusual
-constexpr double kScoreStep = 1.0;         // [m] between looks at the score of the pose
-constexpr double kScoreMemory = 1.0 / 30;  // weight of a look in the usual score: 30 m
-constexpr double kWorse = 0.08;            // below the usual score: asked about
 constexpr double kFits = 0.3;       // a place with a lower score does not explain what is seen
 constexpr double kLikely = 0.5;     // probability from which on a search confirms a pose
 constexpr double kHopeless = 0.01;  // probability of a pose beside a better place: as good as lost
@@ -44,8 +41,7 @@ void Localizer::forgetSearch() {
   search_.alarm.reset();
   search_.signs = {};
   search_.usual_match.reset();
-  search_.usual_score.reset();
-  search_.fits_worse = false;
+  search_.score.reset();
   search_.rivals.reset();
   search_.followed.reset();
   search_.probation.reset();
@@ -73,19 +69,14 @@ std::vector<hyselam::Point2> Localizer::shortTermPoints(const Pose2& base_in_map
   return points;
 }
 
-/// Now and then: whether the pose explains the last metres worse than usual. In a corridor that
-/// looks alike everywhere nothing else tells that the robot was carried along it.
+/// Whether the pose explains the last metres worse than usual.
 bool Localizer::fitsWorse(const PoseEstimate& estimate) {
-  if (search_.way - search_.score_at < kScoreStep || search_.submap.empty()) {
-    return search_.fits_worse;
+  if (search_.score.isDue(search_.way) && !search_.submap.empty()) {
+    const Submap submap = search_.submap.build(kAlarmLength, kTurnAsTravel);
+    search_.score.look(search_.way,
+                       search_.background->places().refine(submap, estimate.mean).seen);
   }
-  search_.score_at = search_.way;
-  const Submap submap = search_.submap.build(kAlarmLength, kTurnAsTravel);
-  const double score = search_.background->places().refine(submap, estimate.mean).seen;
-  const double usual = search_.usual_score.value_or(score);
-  search_.fits_worse = score < usual - kWorse;
-  search_.usual_score = usual + kScoreMemory * (score - usual);
-  return search_.fits_worse;
+  return search_.score.isWorse();
 }
 
 /// While tracking: whether something speaks against the pose, and whether it is told as sure.
@@ -288,8 +279,7 @@ void Localizer::confirmPose(const Verdict& verdict) {
   // Where the map explains nothing, or other places together are likelier, nothing is confirmed.
   if (verdict.best.seen < kFits || verdict.probability < kLikely) return;
   inliers_.accept();  // no place fits better: what is seen now is normal here
-  search_.usual_score.reset();
-  search_.fits_worse = false;
+  search_.score.reset();
   search_.alarm.confirm();
 }
 
@@ -310,8 +300,7 @@ void Localizer::trackAt(const Pose2& base_in_grid, LocalizationResult& result) {
   search_.probation.begin(search_.way);
   search_.alarm.reset();
   search_.signs = {};
-  search_.usual_score.reset();
-  search_.fits_worse = false;
+  search_.score.reset();
   search_.rivals.reset();
   search_.short_term.clear();
   search_.followed.reset();
