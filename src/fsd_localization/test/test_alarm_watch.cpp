@@ -174,9 +174,9 @@ TEST(PlaceJudge, aBeatenPoseIsToldHowHopelessItIsAndStaysAHypothesis) {
   answer.believed = placeAt(60, 0.4);
   const auto v = judge(answer);
   ASSERT_TRUE(v);
-  EXPECT_FALSE(v->is_believed);
+  EXPECT_FALSE(v->best_is_believed);
   EXPECT_LT(v->probability, 0.95) << "nobody knows which of the two it is";
-  EXPECT_LT(v->believed, 1e-6) << "but not the believed one";
+  EXPECT_LT(v->believed_probability, 1e-6) << "but not the believed one";
   ASSERT_EQ(v->hypotheses.size(), 3U);
   EXPECT_EQ(v->hypotheses.back().base.x, 60.0);
 }

@@ -261,14 +261,14 @@ TEST(PlaceJudge, comparesPlacesAndKeepsWhatIsBelieved) {
   answer.believed = place(1.2, 0.45);
   auto v = judge(answer);
   ASSERT_TRUE(v);
-  EXPECT_TRUE(v->is_believed) << "a low share alone says nothing";
+  EXPECT_TRUE(v->best_is_believed) << "a low share alone says nothing";
   EXPECT_EQ(v->hypotheses.size(), 2U);
   answer.believed = place(100, 0.2);  // the search did not even find it
   v = judge(answer);
-  EXPECT_FALSE(v->is_believed);
+  EXPECT_FALSE(v->best_is_believed);
   EXPECT_EQ(v->best.base.x, 1.0);
   answer.believed = place(100, 0.6);
-  EXPECT_TRUE(judge(answer)->is_believed);
+  EXPECT_TRUE(judge(answer)->best_is_believed);
 }
 
 TEST(Localizer, keepsARightPoseInClutterThatTheMapLacks) {

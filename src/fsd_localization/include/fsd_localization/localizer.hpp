@@ -25,6 +25,7 @@
 #include "fsd_localization/search/place_judge.hpp"
 #include "fsd_localization/search/probation.hpp"
 #include "fsd_localization/search/rival_watch.hpp"
+#include "fsd_localization/search/score_watch.hpp"
 #include "fsd_localization/search/short_term_layer.hpp"
 #include "hyselam_common/parameters.hpp"
 #include "hyselam_scan_matching/scan_odometry.hpp"
@@ -61,22 +62,26 @@ struct LocalizerParams {
   double converged_cluster_weight = 0.9;  ///< share of the weight in the heaviest cluster
   double converged_stddev = 0.75;         ///< of the position, along its widest axis [m]
 
-  // Hybrid only: FSD searches, then the likelihood field takes over.
+  // Hybrid only: FSD until places are known, then the likelihood field.
   std::size_t tracking_particles = 1000;  ///< minimum while tracking
   /// While the likelihood field disambiguates the remaining pose hypotheses.
   std::size_t hypothesis_particles = 20000;
   /// Effective number of independent beams of a scan in this state; low, so that weights change
   /// slowly. While tracking: LikelihoodFieldParams::independent_beams.
   double hypothesis_beams = 3.0;
-  /// Switch to the likelihood field when the particles occupy at most this many bins
-  /// (0.5 m, 15 deg).
+  /// Without submap_search: switch to the likelihood field when the particles occupy at most this
+  /// many bins (0.5 m, 15 deg).
   std::size_t max_hypothesis_bins = 4000;
   double inlier_distance = 0.3;  ///< inlier: a return within this distance of a mapped obstacle [m]
-  /// A pose hypothesis is accepted only with this share of inliers among the returns, averaged over
-  /// about 1 m of travel; otherwise the search is repeated.
+  /// Share of inliers among the returns, averaged over about 1 m of travel, that is needed to track
+  /// a pose that was told, or a place that the search by submaps alone is not sure of. Without
+  /// submap_search: that each hypothesis needs; otherwise the search is repeated.
   double found_inlier_ratio = 0.75;
-  double lost_inlier_ratio = 0.45;  ///< lost when that average is below this ratio
-  /// Also lost when that average is below this factor times the average over about 30 m.
+  /// Below it that average raises an alarm: the map is searched, and the pose is not relied on
+  /// until the search confirms it. Without submap_search: lost.
+  double lost_inlier_ratio = 0.45;
+  /// Below this factor times the average over about 30 m, it also raises an alarm. Without
+  /// submap_search: lost.
   double lost_relative_ratio = 0.85;
 
   void describe(hyselam::ParameterVisitor& visit);
@@ -121,7 +126,7 @@ class Localizer {
   static void checkMap(const hyselam::OccupancyGrid& map, const LocalizerParams& params);
 
   /// Integrates a scan with the odometry pose at its stamp. Runs the filter and returns its result
-  /// when the robot has moved enough or `force` is set.
+  /// when the robot has moved enough, an answer of the search is due, or `force` is set.
   /// @throws hyselam::InputError for a scan or pose that cannot be used, or a stamp that is not
   ///   later than the last one; the state is unchanged.
   std::optional<LocalizationResult> update(const hyselam::LaserScan& scan,
@@ -195,12 +200,13 @@ class Localizer {
   void forgetSearch();
   void learnShortTerm(const hyselam::Pose2& base_in_grid);
 
-  // Transitions between the states of the hybrid model.
+  // Transitions between the states of the hybrid model, see localizer_state.hpp.
   void startHypotheses(Particles particles);
   void startTracking();
   void searchAgain();
+  /// Without the search by submaps.
   /// @param motion since the last update [m]: distance; while tracking, plus 0.5 m/rad * |turn|.
-  void updateState(const PoseEstimate& estimate, double motion, LocalizationResult& result);
+  void updateByInliers(const PoseEstimate& estimate, double motion, LocalizationResult& result);
   /// Replaces the filter by one that weighs `particles` by the likelihood field.
   void startLikelihoodFilter(Particles particles, std::size_t min_particles,
                              double independent_beams);
@@ -230,14 +236,13 @@ class Localizer {
     SubmapBuilder submap;
     ShortTermLayer short_term;
     std::unique_ptr<BackgroundSearch> background;
-    double way = 0.0;                // [m] of motion, turns counted
-    std::optional<double> asked_at;  // on that way
+    double way = 0.0;                  // [m] of motion, turns counted
+    double asked_at = 0.0;             // on that way, when it was asked last
+    std::optional<double> waits_from;  // where the step to the next question begins; none: at once
     AlarmWatch alarm;
     AlarmWatch::Signs signs;            // since the last update
     std::optional<double> usual_match;  // average inlier ratio of scans with those before
-    std::optional<double> usual_score;  // average score of the pose with the last metres
-    double score_at = 0.0;              // on that way, when it was told last
-    bool fits_worse = false;            // then it was far below the average
+    ScoreWatch score;                   // of the tracked pose with the scans of the last metres
     RivalWatch rivals;                  // what was better than the tracked pose
     FollowedPlaces followed;            // while the robot is not found
     Probation probation;                // of a place found lately

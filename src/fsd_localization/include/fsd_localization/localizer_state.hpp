@@ -3,23 +3,33 @@
 
 namespace fsd_localization {
 
-/// The states of localisation, and what leads from one to another:
+/// The states of localisation. In a search, free-space density weighs particles everywhere; with
+/// hypotheses, the likelihood field chooses among a few places; while tracking it follows one.
+/// relocalizeGlobally() leads to kGlobalSearch, setInitialPose() to kGlobalHypotheses. What else
+/// leads from one to another is decided by the search by submaps (localizer_search.cpp):
 ///
-///     state              on                                     next
-///     kGlobalSearch      few places are left                    kGlobalHypotheses
-///     kGlobalHypotheses  one place is left, and fits            kTracking
-///                        too few inliers                        kGlobalSearch
-///     kTracking          too few inliers                        kLostSearch
-///     kLostSearch        few places are left                    kLostHypotheses
-///     kLostHypotheses    one place is left, and fits            kTracking
-///                        too few inliers                        kLostSearch
-///     any                relocalizeGlobally()                   kGlobalSearch
-///     any                setInitialPose()                       kGlobalHypotheses
+///     state              on                                          next
+///     kGlobalSearch      the search is sure of a place               kTracking
+///                        it finds places, and is sure of none        kGlobalHypotheses
+///     kGlobalHypotheses  it is sure of a place, or agrees            kTracking
+///                        with the filter for long
+///                        the pose was told, has converged and fits   kTracking
+///     kTracking          another place is better, and sure           kTracking, there
+///                        other places are better, none is sure       kLostHypotheses
+///     kLostHypotheses    as kGlobalHypotheses                        kTracking
 ///
-/// In a search, free-space density weighs particles everywhere; with hypotheses, the likelihood
-/// field chooses among the places that are left; while tracking it follows one place. Models other
-/// than hybrid use kGlobalSearch and kTracking only, and change between them as their estimate
-/// converges or not.
+/// or, without it (LocalizerParams::submap_search), by the share of inliers:
+///
+///     kGlobalSearch      few places are left                         kGlobalHypotheses
+///     kGlobalHypotheses  one place is left, and fits                 kTracking
+///                        too few inliers                             kGlobalSearch
+///     kTracking          too few inliers                             kLostSearch
+///     kLostSearch        few places are left                         kLostHypotheses
+///     kLostHypotheses    one place is left, and fits                 kTracking
+///                        too few inliers                             kLostSearch
+///
+/// Models other than hybrid use kGlobalSearch and kTracking only, and change between them as their
+/// estimate converges or not.
 /// Whether the estimate of an update deserves trust is LocalizationResult::converged.
 enum class LocalizerState {
   kGlobalSearch,

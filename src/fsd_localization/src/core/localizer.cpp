@@ -108,20 +108,26 @@ void LocalizerParams::describeHybrid(hyselam::ParameterVisitor& visit) {
         "hybrid: what the beams of a scan count as meanwhile; few, so that it chooses slowly");
   visit.renamed("max_candidate_bins", "max_hypothesis_bins");
   visit("max_hypothesis_bins", max_hypothesis_bins, count, "",
-        "hybrid: it does when the particles fill no more bins of 0.5 m and 15 deg");
+        "hybrid without submap_search: it does when the particles fill no more bins of 0.5 m and "
+        "15 deg");
   visit.renamed("explained_tolerance", "inlier_distance");
   visit("inlier_distance", inlier_distance, Range::above(0.0), "m",
         "hybrid: a return this near to a mapped obstacle is an inlier");
   const Range ratio = Range::fromBelow(0.0, 1.0);
   visit.renamed("found_above", "found_inlier_ratio");
   visit("found_inlier_ratio", found_inlier_ratio, ratio, "",
-        "hybrid: a place is accepted only with this share of inliers, averaged over about 1 m");
+        "hybrid: share of inliers, averaged over about 1 m, that a place needs that was told, or "
+        "that "
+        "the search is not sure of; without submap_search: each");
   visit.renamed("lost_below", "lost_inlier_ratio");
-  visit("lost_inlier_ratio", lost_inlier_ratio, ratio, "",
-        "hybrid: lost below this share of inliers, averaged over about 1 m");
+  visit(
+      "lost_inlier_ratio", lost_inlier_ratio, ratio, "",
+      "hybrid: below this share of inliers, averaged over about 1 m, the map is searched, and the "
+      "pose not relied on until that confirms it; without submap_search: lost");
   visit.renamed("lost_ratio", "lost_relative_ratio");
   visit("lost_relative_ratio", lost_relative_ratio, ratio, "",
-        "hybrid: or below this times the average over about 30 m");
+        "hybrid: below this times its average over about 30 m the map is searched; without "
+        "submap_search: lost");
 }
 
 void LocalizerParams::validate() const {
@@ -163,7 +169,7 @@ std::shared_ptr<const FsdMap> densityMap(const hyselam::OccupancyGrid& map,
 
 void Localizer::checkMap(const hyselam::OccupancyGrid& map, const LocalizerParams& params) {
   const hyselam::OccupancyGrid coarse = coarsenForDensities(map, params);
-  const auto free = [&](std::int8_t v) { return v >= 0 && v < params.map.thresholds.free_below; };
+  const auto free = [&](std::int8_t v) { return params.map.thresholds.isFree(v); };
   if (std::none_of(coarse.cells.begin(), coarse.cells.end(), free)) {
     throw hyselam::InputError("map", "", "has no free cell to put particles on");
   }
@@ -272,7 +278,7 @@ void Localizer::startLikelihoodFilter(Particles particles, std::size_t min_parti
   p.adaptive_size = true;
   p.min_particles = min_particles;
   p.max_particles = params_.hypothesis_particles;
-  p.recovery_alpha_slow = p.recovery_alpha_fast = 0.0;  // updateState() recovers
+  p.recovery_alpha_slow = p.recovery_alpha_fast = 0.0;  // a search recovers
   const std::uint64_t stream =
       2 * millimeters(travelled_) + (state_ == LocalizerState::kTracking ? 1 : 0);
   filter_ = ParticleFilter(map_, p, hyselam::mix(params_.seed, stream));
@@ -372,7 +378,7 @@ std::optional<LocalizationResult> Localizer::update(const hyselam::LaserScan& sc
       updateBySearch(estimate, motion, result);
       learnShortTerm(estimate.mean);
     } else {
-      updateState(estimate, motion, result);
+      updateByInliers(estimate, motion, result);
     }
   } else {
     state_ = result.converged ? LocalizerState::kTracking : LocalizerState::kGlobalSearch;
@@ -399,8 +405,8 @@ LocalizationResult Localizer::resultOf(const PoseEstimate& estimate, double effe
   return result;
 }
 
-void Localizer::updateState(const PoseEstimate& estimate, double motion,
-                            LocalizationResult& result) {
+void Localizer::updateByInliers(const PoseEstimate& estimate, double motion,
+                                LocalizationResult& result) {
   if (isSearching(state_)) {
     result.converged = false;  // the search alone is coarse; the likelihood field has to confirm
     const std::size_t limit =

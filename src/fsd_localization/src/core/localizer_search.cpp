@@ -20,9 +20,6 @@ constexpr double kCheckStep = 30.0;        // [m] at most between checks
 constexpr double kCheckLength = 5.0;       // [m] of scans of a check
 constexpr double kOneScan = 0.3;           // [m] a shorter submap is a scan: SubmapBuilder's step
 constexpr double kUsual = 0.75;            // of the usual share of inliers: less is unusual
-constexpr double kScoreStep = 1.0;         // [m] between looks at the score of the pose
-constexpr double kScoreMemory = 1.0 / 30;  // weight of a look in the usual score: 30 m
-constexpr double kWorse = 0.08;            // below the usual score: asked about
 constexpr double kFits = 0.3;       // a place with a lower score does not explain what is seen
 constexpr double kLikely = 0.5;     // probability from which on a search confirms a pose
 constexpr double kHopeless = 0.01;  // probability of a pose beside a better place: as good as lost
@@ -39,13 +36,12 @@ void Localizer::forgetSearch() {
   search_.submap.reset();
   search_.short_term.clear();
   if (search_.background) search_.background->drop();
-  search_.asked_at.reset();
+  search_.waits_from.reset();
   search_.verdict.reset();
   search_.alarm.reset();
   search_.signs = {};
   search_.usual_match.reset();
-  search_.usual_score.reset();
-  search_.fits_worse = false;
+  search_.score.reset();
   search_.rivals.reset();
   search_.followed.reset();
   search_.probation.reset();
@@ -73,19 +69,14 @@ std::vector<hyselam::Point2> Localizer::shortTermPoints(const Pose2& base_in_map
   return points;
 }
 
-/// Now and then: whether the pose explains the last metres worse than usual. In a corridor that
-/// looks alike everywhere nothing else tells that the robot was carried along it.
+/// Whether the pose explains the last metres worse than usual.
 bool Localizer::fitsWorse(const PoseEstimate& estimate) {
-  if (search_.way - search_.score_at < kScoreStep || search_.submap.empty()) {
-    return search_.fits_worse;
+  if (search_.score.isDue(search_.way) && !search_.submap.empty()) {
+    const Submap submap = search_.submap.build(kAlarmLength, kTurnAsTravel);
+    search_.score.look(search_.way,
+                       search_.background->places().refine(submap, estimate.mean).seen);
   }
-  search_.score_at = search_.way;
-  const Submap submap = search_.submap.build(kAlarmLength, kTurnAsTravel);
-  const double score = search_.background->places().refine(submap, estimate.mean).seen;
-  const double usual = search_.usual_score.value_or(score);
-  search_.fits_worse = score < usual - kWorse;
-  search_.usual_score = usual + kScoreMemory * (score - usual);
-  return search_.fits_worse;
+  return search_.score.isWorse();
 }
 
 /// While tracking: whether something speaks against the pose, and whether it is told as sure.
@@ -100,9 +91,9 @@ void Localizer::watchForAlarms(const PoseEstimate& estimate, LocalizationResult&
   if (search_.alarm.add(search_.way, signs)) {
     search_.background->drop();  // what was asked before says nothing about it
     if (signs.odd || signs.low) {
-      search_.asked_at.reset();  // at once
+      search_.waits_from.reset();  // asked at once
     } else {
-      search_.asked_at = search_.way;  // what the map confirms can wait
+      search_.waits_from = search_.way;  // what the map confirms can wait
     }
   }
   // Meanwhile nobody should rely on the pose; but the robot is not lost before another place is
@@ -161,11 +152,11 @@ bool Localizer::needsOwnScans() const {
 /// While tracking: an alarm, a place that was better, or a place found lately.
 bool Localizer::wantsSearch() {
   if (needsOwnScans() && search_.rivals.isTooEarly(search_.way)) return false;
-  const double since = search_.asked_at ? search_.way - *search_.asked_at : kAskStep;
+  const double since = search_.waits_from ? search_.way - *search_.waits_from : kAskStep;
   const bool check = search_.way - search_.tracked_from >= search_.next_check;
   const bool again =
       search_.rivals.hasRival() || (search_.probation.isOpen() && since >= Probation::kStep) ||
-      (search_.alarm.isOpen() && (!search_.asked_at || since >= search_.alarm.step()));
+      (search_.alarm.isOpen() && (!search_.waits_from || since >= search_.alarm.step()));
   if (check) search_.next_check += std::min(search_.next_check, kCheckStep);
   return check || again;
 }
@@ -173,7 +164,7 @@ bool Localizer::wantsSearch() {
 /// Asks when there is a reason to: not found yet; an alarm; a place found lately.
 void Localizer::askSearch(const PoseEstimate& estimate) {
   if (search_.background->busy() || search_.submap.empty()) return;
-  if (search_.asked_at && search_.way - *search_.asked_at < kAskStep) return;
+  if (search_.waits_from && search_.way - *search_.waits_from < kAskStep) return;
   double length = SubmapBuilder::kMaxLength, turn_as_travel = 0.0;
   std::optional<Pose2> believed;
   if (state_ == LocalizerState::kTracking) {
@@ -192,6 +183,7 @@ void Localizer::askSearch(const PoseEstimate& estimate) {
     believed = estimate.mean;
   }
   search_.asked_at = search_.way;
+  search_.waits_from = search_.way;
   search_.background->ask(observation_.scan.stamp, *updated_odom_,
                           search_.submap.build(length, turn_as_travel), believed);
 }
@@ -209,9 +201,10 @@ void Localizer::takeAnswer(const PoseEstimate& estimate, LocalizationResult& res
 /// wrong here.
 bool Localizer::isBeaten(const SearchAnswer& answer, const Verdict& verdict) const {
   if (search_.alarm.looksCarried()) {
-    return verdict.probability >= params_.lost_probability || verdict.believed < kHopeless;
+    return verdict.probability >= params_.lost_probability ||
+           verdict.believed_probability < kHopeless;
   }
-  const bool impossible = verdict.believed < kImpossible;
+  const bool impossible = verdict.believed_probability < kImpossible;
   if (verdict.probability >= params_.lost_probability) {
     return impossible || lengthWithTurns(answer.length, answer.turned) >= kMapEvidence;
   }
@@ -221,12 +214,12 @@ bool Localizer::isBeaten(const SearchAnswer& answer, const Verdict& verdict) con
 void Localizer::decide(const SearchAnswer& answer, const Verdict& verdict,
                        const PoseEstimate& estimate, LocalizationResult& result) {
   const Pose2 motion = between(answer.base_in_odom, *updated_odom_);
-  const bool is_beaten = answer.believed && !verdict.is_believed && isBeaten(answer, verdict);
+  const bool is_beaten = answer.believed && !verdict.best_is_believed && isBeaten(answer, verdict);
   const bool fits = verdict.best.seen >= kFits;
   if (state_ == LocalizerState::kTracking) {
     if (!answer.believed) return;  // asked before
     // By what had been seen when it was asked.
-    search_.probation.answered(search_.asked_at.value_or(0.0), fits ? verdict.believed : 0.0,
+    search_.probation.answered(search_.asked_at, fits ? verdict.believed_probability : 0.0,
                                params_.found_probability);
     if (!is_beaten) {
       confirmPose(verdict);
@@ -247,7 +240,7 @@ void Localizer::decide(const SearchAnswer& answer, const Verdict& verdict,
       return;
     }
     followPlaces(verdict.hypotheses, motion, estimate);
-    search_.asked_at.reset();  // at once again, with another scan
+    search_.waits_from.reset();  // at once again, with another scan
     return;
   }
   if (search_.guided && answer.believed && !is_beaten)
@@ -277,16 +270,16 @@ bool Localizer::isAgreed(const Verdict& verdict, const PoseEstimate& estimate) c
 
 /// A search has found no place that is so much better than the tracked one that it counts.
 void Localizer::confirmPose(const Verdict& verdict) {
-  search_.alarm.answered(!verdict.is_believed && verdict.probability >= params_.lost_probability);
-  if (verdict.is_believed || verdict.believed > 1.0 - params_.lost_probability) {
+  search_.alarm.answered(!verdict.best_is_believed &&
+                         verdict.probability >= params_.lost_probability);
+  if (verdict.best_is_believed || verdict.believed_probability > 1.0 - params_.lost_probability) {
     search_.rivals.reset();
   }
-  if (!verdict.is_believed) return;
+  if (!verdict.best_is_believed) return;
   // Where the map explains nothing, or other places together are likelier, nothing is confirmed.
   if (verdict.best.seen < kFits || verdict.probability < kLikely) return;
   inliers_.accept();  // no place fits better: what is seen now is normal here
-  search_.usual_score.reset();
-  search_.fits_worse = false;
+  search_.score.reset();
   search_.alarm.confirm();
 }
 
@@ -307,8 +300,7 @@ void Localizer::trackAt(const Pose2& base_in_grid, LocalizationResult& result) {
   search_.probation.begin(search_.way);
   search_.alarm.reset();
   search_.signs = {};
-  search_.usual_score.reset();
-  search_.fits_worse = false;
+  search_.score.reset();
   search_.rivals.reset();
   search_.short_term.clear();
   search_.followed.reset();

@@ -26,8 +26,9 @@ struct IcpResult {
   /// Inverse covariance of the error (x, y, theta) in the frame of `pose`, from the surfaces
   /// without the guess: nearly singular along a bare corridor.
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  double matched = 0.0;  ///< share of the scan's points with a surface within final_distance, 0..1
-  double rms = 0.0;      ///< of their distances from the surfaces [m]
+  /// Inlier ratio: share of the scan's points with a surface within final_distance, 0..1.
+  double matched = 0.0;
+  double rms = 0.0;  ///< of their distances from the surfaces [m]
   /// Negative logarithm of the likelihood of the scan, up to a constant: points without a surface
   /// within final_distance count as if one were just there. The prior is not in it.
   double cost = 0.0;

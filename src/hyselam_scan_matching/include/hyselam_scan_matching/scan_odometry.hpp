@@ -32,15 +32,18 @@ struct ScanOdometryParams {
   void validate() const;
 };
 
-/// The smooth motion of a robot: odometry between scans, corrected by each scan. The frame is that
-/// of the odometry at first and drifts from it as the wheels slip.
+/// The smooth motion of a robot: odometry between scans, corrected by each scan. Its frame, the
+/// smooth frame, is that of the odometry at first and drifts from it as the wheels slip. The local
+/// map is a SurfaceMap of the last keyframes, not the grid of that name in fsd_localization.
 class ScanOdometry {
  public:
   /// What became of a scan.
   struct Step {
-    hyselam::Pose2 pose;      ///< of the base, in the smooth frame
-    bool matched = false;     ///< the scan was compared with the local map
-    double inlier_ratio = 1;  ///< share of its points on known surfaces, if it was
+    hyselam::Pose2 pose;  ///< of the base, in the smooth frame
+    /// The scan was compared with the local map, whether it fits it or not; not where it is near
+    /// the last one that was, or shows nothing.
+    bool matched = false;
+    double inlier_ratio = 1;  ///< IcpResult::matched of that comparison
     /// The motion since the scan before is unknown: the odometry jumped, or several scans in a row
     /// did not fit. The local map begins again with this scan.
     bool broken = false;

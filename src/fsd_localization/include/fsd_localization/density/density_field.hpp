@@ -6,16 +6,11 @@
 #include <vector>
 
 #include "fsd_localization/density/free_space_density.hpp"
+#include "fsd_localization/density/occupancy_thresholds.hpp"
 #include "hyselam_common/occupancy_grid.hpp"
 #include "hyselam_common/parameters.hpp"
 
 namespace fsd_localization {
-
-/// Thresholds on map values; a value between the two, or negative, is unknown.
-struct OccupancyThresholds {
-  int free_below = 25;     ///< free: 0 <= value < free_below
-  int occupied_from = 65;  ///< occupied: value >= occupied_from
-};
 
 /// @throws hyselam::InputError for a grid whose cell count does not fit its size.
 FreeSpaceGrid freeSpaceOf(const hyselam::OccupancyGrid& map,

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "fsd_localization/density/density_field.hpp"
+#include "fsd_localization/density/occupancy_thresholds.hpp"
 #include "hyselam_common/occupancy_grid.hpp"
 
 namespace fsd_localization {

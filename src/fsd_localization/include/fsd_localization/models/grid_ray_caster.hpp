@@ -2,9 +2,11 @@
 // loop), skipping squares that hold no obstacle by a distance map.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
-#include "fsd_localization/density/density_field.hpp"
+#include "fsd_localization/density/occupancy_thresholds.hpp"
+#include "hyselam_common/occupancy_grid.hpp"
 
 namespace fsd_localization {
 

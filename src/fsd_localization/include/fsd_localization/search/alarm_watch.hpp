@@ -6,8 +6,8 @@
 namespace fsd_localization {
 
 /// An alarm begins with something that speaks against the pose and ends when a search of the map
-/// has confirmed the pose and nothing speaks against it any more; it never ends by itself. Way is
-/// that of the robot [m], each radian turned counted as half a metre.
+/// has confirmed the pose and nothing speaks against it any more; it never ends by itself. Way:
+/// see way.hpp.
 class AlarmWatch {
  public:
   static constexpr double kFirstStep = 0.5;            ///< [m] between questions

@@ -10,8 +10,7 @@ namespace fsd_localization {
 
 /// A search knows what was seen last, a filter all that was seen since it follows a place. So an
 /// answer only adds the places to it that it has not followed: those that died meanwhile stay dead.
-/// Places are poses of the robot now, in the grid's frame; way is that of the robot [m], each
-/// radian turned counted as half a metre.
+/// Places are poses of the robot now, in the grid's frame. Way: see way.hpp.
 class FollowedPlaces {
  public:
   /// @param base_in_odom the robot now, in a frame that moves smoothly; as below.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "fsd_localization/search/background_search.hpp"
+#include "fsd_localization/search/way.hpp"
 #include "hyselam_common/parameters.hpp"
 
 namespace fsd_localization {
@@ -27,17 +28,14 @@ struct PlaceOdds {
 /// @return probability, 0..1, calibrated on logs (docs/algorithms/localization.md).
 double probabilityOfPlace(double score, double rival, double length, const PlaceOdds& odds = {});
 
-constexpr double kTurnAsTravel = 0.5;  ///< [m/rad] a turn shows as much as so much travel
-inline double lengthWithTurns(double length, double turned) {
-  return length + kTurnAsTravel * turned;
-}
-
-/// The best place of an answer and how sure it is.
+/// The best place of an answer and how sure it is. The believed one is SearchAnswer::believed: the
+/// pose that was asked about.
 struct Verdict {
   Place best;
   double probability = 0.0;
-  bool is_believed = false;  ///< it is the believed one
-  double believed = 1.0;     ///< probability of the believed one beside the best other place
+  bool best_is_believed = false;  ///< the best place is the believed one
+  /// Of the believed one, beside the best other place; 1 if none was believed.
+  double believed_probability = 1.0;
   /// Places that are not much worse, the best one included, and the believed one.
   std::vector<Place> hypotheses;
 };

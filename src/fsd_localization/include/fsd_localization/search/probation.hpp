@@ -8,8 +8,8 @@ namespace fsd_localization {
 /// One answer of a search found the place, by the scans of a metre perhaps. Until an answer that
 /// also rests on scans of after that is as sure, the pose is asked about each metre, and while
 /// other places together are likelier it is not to be relied on. It is not given up for that: the
-/// map may know the room in part only, and then it is asked about each metre for as long. Way is
-/// that of the robot [m], each radian turned counted as half a metre.
+/// map may know the room in part only, and then it is asked about each metre for as long. Way:
+/// see way.hpp.
 class Probation {
  public:
   static constexpr double kOwnScans = 1.5;  ///< [m] seen since it was found, that confirm a place

@@ -8,8 +8,7 @@
 namespace fsd_localization {
 
 /// One answer against a tracked pose may be wrong: scans are joined wrongly in a quick turn, the
-/// map is wrong here. So the next must say it again of the same place. Way is that of the robot
-/// [m], each radian turned counted as half a metre.
+/// map is wrong here. So the next must say it again of the same place. Way: see way.hpp.
 class RivalWatch {
  public:
   /// [m] of scans that a second answer rests on, all of them seen since the first one: where each

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "fsd_localization/models/distance_field.hpp"
+#include "fsd_localization/density/occupancy_thresholds.hpp"
 #include "hyselam_common/occupancy_grid.hpp"
 #include "hyselam_common/pose2.hpp"
 

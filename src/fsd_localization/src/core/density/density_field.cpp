@@ -19,9 +19,9 @@ FreeSpaceGrid freeSpaceOf(const hyselam::OccupancyGrid& map,
   for (int y = 0; y < g.height; ++y) {
     for (int x = 0; x < g.width; ++x) {
       const int v = map.at({x, y});
-      if (v >= 0 && v < thresholds.free_below) {
+      if (thresholds.isFree(v)) {
         space.free.set(x, y, true);
-      } else if (v < thresholds.occupied_from) {
+      } else if (!thresholds.isOccupied(v)) {
         space.unknown.set(x, y, true);
       }
     }

@@ -35,7 +35,7 @@ DistanceField distanceField(const hyselam::OccupancyGrid& map,
   cv::Mat open(g.height, g.width, CV_8U);
   for (int y = 0; y < g.height; ++y) {
     for (int x = 0; x < g.width; ++x) {
-      open.at<std::uint8_t>(y, x) = map.at({x, y}) >= thresholds.occupied_from ? 0 : 1;
+      open.at<std::uint8_t>(y, x) = thresholds.isOccupied(map.at({x, y})) ? 0 : 1;
     }
   }
   return {g, distanceToZero(open, g.resolution), distanceToZero(1 - open, g.resolution)};

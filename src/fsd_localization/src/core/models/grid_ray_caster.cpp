@@ -15,7 +15,7 @@ GridRayCaster::GridRayCaster(const hyselam::OccupancyGrid& map,
   cv::Mat open(height_, width_, CV_8U), distance;
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x) {
-      open.at<std::uint8_t>(y, x) = map.at({x, y}) >= thresholds.occupied_from ? 0 : 1;
+      open.at<std::uint8_t>(y, x) = thresholds.isOccupied(map.at({x, y})) ? 0 : 1;
     }
   }
   cv::distanceTransform(open, distance, cv::DIST_C, 3);

@@ -72,7 +72,7 @@ LikelihoodFieldModel::LikelihoodFieldModel(const OccupancyGrid& map,
 
   occupied_.resize(geometry_.cellCount());
   for (std::size_t i = 0; i < occupied_.size(); ++i) {
-    occupied_[i] = map.cells[i] >= thresholds.occupied_from;
+    occupied_[i] = thresholds.isOccupied(map.cells[i]);
   }
 }
 

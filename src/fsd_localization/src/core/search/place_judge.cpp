@@ -50,7 +50,7 @@ std::optional<Verdict> judge(const SearchAnswer& answer, const PlaceOdds& odds) 
   if (places.empty()) return std::nullopt;
   Verdict v;
   v.best = places.front();
-  v.is_believed = answer.believed && isSamePlace(v.best.base, answer.believed->base);
+  v.best_is_believed = answer.believed && isSamePlace(v.best.base, answer.believed->base);
   const double length = lengthWithTurns(answer.length, answer.turned);
   double second = places.size() > 1 ? places[1].seen : 0.0;
   // Nobody has looked at places that are worse than the believed one by so much.
@@ -59,9 +59,9 @@ std::optional<Verdict> judge(const SearchAnswer& answer, const PlaceOdds& odds) 
   }
   v.probability = probabilityOfPlace(v.best.seen, std::min(second, v.best.seen), length, odds);
   if (answer.believed) {
-    v.believed = v.is_believed
-                     ? v.probability
-                     : probabilityOfPlace(answer.believed->seen, v.best.seen, length, odds);
+    v.believed_probability =
+        v.best_is_believed ? v.probability
+                           : probabilityOfPlace(answer.believed->seen, v.best.seen, length, odds);
   }
   for (const Place& p : places) {
     if (p.seen < v.best.seen - kHypothesisMargin || v.hypotheses.size() == kMaxHypotheses) break;

@@ -75,7 +75,7 @@ void ScoreLattice::fill(const hyselam::OccupancyGrid& map,
         for (int x = x0; x < x1; ++x) {
           const std::int8_t value = map.at({x, y});
           nearest = std::min(nearest, distance[g.index({x, y})]);
-          free |= static_cast<std::uint8_t>(value >= 0 && value < thresholds.free_below);
+          free |= static_cast<std::uint8_t>(thresholds.isFree(value));
         }
       }
       scoreAt(lx, ly) = by_distance[nearest];

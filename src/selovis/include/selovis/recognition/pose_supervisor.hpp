@@ -24,6 +24,7 @@ struct PoseSupervisorParams {
   void validate() const;
 };
 
+/// One frame of the camera, with what the pose of the localisation lets expect.
 struct SupervisedFrame {
   const std::vector<double>* places = nullptr;  ///< probability of each place by this frame alone
   ViewTestFrame view;                           ///< distances: null where the classifier has none
@@ -44,6 +45,11 @@ struct SupervisionState {
   std::optional<PlacePosePrior> pose;
 };
 
+/// Two tests share the work. A ViewTest tells whether the pose is right, from frames with a pose
+/// and distances, if the learned frames have poses and are compared themselves (comparesViews()). A
+/// KidnappingDetector gets every frame; it tells whether the pose is right where the ViewTest
+/// cannot, and always in which place a rejected robot is if no rival leads by views. Both raise the
+/// alarm at the same evidence.
 class PoseSupervisor {
  public:
   /// @param transitions of the model's places (reordered()).

@@ -106,6 +106,12 @@ class ViewTest {
   double likelihoodAt(const hyselam::Pose2& camera, LearnedViews::Regression* seen) const;
   void moveRivals(const ViewTestFrame& frame);
   void addRivals(const ViewTestFrame& frame, const hyselam::Pose2& camera);
+  /// Adds what the frame, worth so many looks, says of the rivals; `state` gets what it says of the
+  /// leading one. @returns the places that the camera spoke for.
+  std::vector<int> weighRivals(const ViewTestFrame& frame, double looks, double at_pose,
+                               ViewTestState& state);
+  /// Those without evidence, those that have met the pose or a better one, the last of too many.
+  void dropRivals(const hyselam::Pose2& base);
   bool isElsewhere(const hyselam::Pose2& a, const hyselam::Pose2& b) const;
   void remember(const ViewTestFrame& frame, double looks, const std::vector<int>& places);
 

@@ -200,21 +200,51 @@ void learnWeights(Objective& objective, const std::vector<SignaturePart>& parts,
   }
 }
 
-Question ask(const Samples& samples, int places, double beta, const FrameIndex& frames,
-             std::size_t frame, const std::vector<char>& blocked,
-             std::vector<PartExemplars>& exemplars) {
-  Question question;
-  question.place = samples.places[frames.begin[frame]];
-  const float* part = samples.row(frames.begin[frame]);
-  for (std::size_t p = 0; p < exemplars.size(); part += samples.parts[p].size, ++p) {
-    const auto& nearest = exemplars[p].search(part, &blocked);
-    question.nearest.push_back(nearest.empty() ? std::numeric_limits<double>::infinity()
-                                               : nearest.front().distance);
-    question.log_likelihoods.emplace_back(static_cast<std::size_t>(places));
-    placeLogLikelihoods(nearest, samples.places, beta, question.log_likelihoods.back());
+/// Asks for learned frames while they are left out.
+class Examiner {
+ public:
+  Examiner(const Samples& samples, int places, double beta, const FrameIndex& frames,
+           std::vector<PartExemplars>& exemplars)
+      : leaving(samples, frames),
+        samples_(samples),
+        places_(places),
+        beta_(beta),
+        frames_(frames),
+        exemplars_(exemplars) {}
+
+  Question ask(std::size_t frame, const std::vector<char>& blocked) {
+    Question question;
+    question.place = samples_.places[frames_.begin[frame]];
+    const float* part = samples_.row(frames_.begin[frame]);
+    for (std::size_t p = 0; p < exemplars_.size(); part += samples_.parts[p].size, ++p) {
+      const auto& nearest = exemplars_[p].search(part, &blocked);
+      question.nearest.push_back(nearest.empty() ? std::numeric_limits<double>::infinity()
+                                                 : nearest.front().distance);
+      question.log_likelihoods.emplace_back(static_cast<std::size_t>(places_));
+      placeLogLikelihoods(nearest, samples_.places, beta_, question.log_likelihoods.back());
+    }
+    return question;
   }
-  return question;
-}
+  /// Adds a question for each of the frames. @param gap see LeavingOut::blockedFor().
+  void askAll(const std::vector<std::size_t>& which, int gap, std::vector<Question>& questions) {
+    for (const std::size_t f : which) {
+      questions.push_back(ask(f, leaving.blockedFor(f, gap, false)));
+    }
+  }
+
+  const Samples& samples() const { return samples_; }
+  int places() const { return places_; }
+  std::size_t frameCount() const { return frames_.count(); }
+
+  LeavingOut leaving;
+
+ private:
+  const Samples& samples_;
+  int places_;
+  double beta_;
+  const FrameIndex& frames_;
+  std::vector<PartExemplars>& exemplars_;
+};
 
 double noveltyOf(const FusionCalibration& c, const std::vector<double>& nearest) {
   double novelty = 0.0, weights = 0.0;
@@ -233,31 +263,29 @@ double medianNearest(const std::vector<Question>& questions, std::size_t part) {
 
 void learnRanges(const std::vector<Question>& questions, FusionCalibration& c) {
   for (std::size_t p = 0; p < c.parts.size(); ++p) {
-    std::vector<double> nearest;
+    double largest = 0.0;
     std::size_t right = 0;
     for (const Question& q : questions) {
-      nearest.push_back(q.nearest[p]);
+      largest = std::max(largest, q.nearest[p]);
       const std::vector<double>& l = q.log_likelihoods[p];
       right += std::max_element(l.begin(), l.end()) - l.begin() == q.place;
     }
-    c.parts[p].median = std::max(kMinSquaredDistance, quantile(nearest, 0.5));
-    c.parts[p].largest = std::max(1.05 * c.parts[p].median, quantile(nearest, 1.0));
+    c.parts[p].median = medianNearest(questions, p);
+    c.parts[p].largest = std::max(1.05 * c.parts[p].median, largest);
     c.parts[p].accuracy = static_cast<double>(right) / static_cast<double>(questions.size());
   }
 }
 
 /// Too few frames to leave tours or stretches out: the distance of each frame to its neighbors
 /// still is the unit of novelty. No range is known.
-void learnTypicalDistances(const Samples& samples, int places, double beta,
-                           const FrameIndex& frames, std::vector<PartExemplars>& exemplars,
-                           FusionCalibration& c) {
+void learnTypicalDistances(Examiner& examiner, FusionCalibration& c) {
   std::vector<std::vector<double>> nearest(c.parts.size());
-  std::vector<char> blocked(frames.count(), 0);
-  std::vector<std::size_t> all(frames.count());
+  std::vector<char> blocked(examiner.frameCount(), 0);
+  std::vector<std::size_t> all(examiner.frameCount());
   std::iota(all.begin(), all.end(), 0);
   for (const std::size_t f : thinned(all, kMaxFrames)) {
     blocked[f] = 1;
-    const Question q = ask(samples, places, beta, frames, f, blocked, exemplars);
+    const Question q = examiner.ask(f, blocked);
     blocked[f] = 0;
     for (std::size_t p = 0; p < nearest.size(); ++p) {
       if (std::isfinite(q.nearest[p])) nearest[p].push_back(q.nearest[p]);
@@ -305,6 +333,78 @@ class LossByTemperature {
   Objective objective_;
   std::vector<std::vector<double>> weights_, shares_;
 };
+
+std::vector<double> learnedWeights(const std::vector<Question>& questions,
+                                   const Examiner& examiner) {
+  const std::vector<SignaturePart>& parts = examiner.samples().parts;
+  std::vector<double> weights;
+  for (const SignaturePart& part : parts) weights.push_back(priorWeight(part));
+  Objective objective(questions, examiner.places());
+  learnWeights(objective, parts, weights);
+  return weights;
+}
+
+/// The weights for frames that lie as far from learned ones as `questions`, which left out the most
+/// that can be left out, and the range of each part.
+void learnFar(const std::vector<Question>& questions, const Examiner& examiner,
+              FusionCalibration& c) {
+  const std::vector<double> weights = learnedWeights(questions, examiner);
+  for (std::size_t p = 0; p < c.parts.size(); ++p) c.parts[p].weight = weights[p];
+  learnRanges(questions, c);
+}
+
+/// The weights for frames that lie as near as the next one. How sure the sum is to be is the
+/// temperature's matter: they only share out the sum of the far ones anew.
+void learnNear(Examiner& examiner, FusionCalibration& c) {
+  std::vector<Question> next;
+  for (const int gap : kNextFrames) {
+    examiner.askAll(thinned(examiner.leaving.askable(gap), kMaxFrames / 2), gap, next);
+  }
+  std::vector<double> weights = learnedWeights(next, examiner);
+  double far_sum = 0.0;
+  for (const PartCalibration& part : c.parts) far_sum += part.weight;
+  const double scale = far_sum / std::accumulate(weights.begin(), weights.end(), 0.0);
+  for (double& w : weights) w = std::min(kMaxWeight, scale * w);
+  for (std::size_t p = 0; p < c.parts.size(); ++p) {
+    c.parts[p].near_weight = weights[p];
+    c.parts[p].near_median = medianNearest(next, p);
+  }
+}
+
+/// How sure the sum is to be, and how good it is then. @param gap that `questions` left out.
+void learnTemperature(const std::vector<Question>& questions, int gap, Examiner& examiner,
+                      FusionCalibration& c) {
+  const std::vector<SignaturePart>& parts = examiner.samples().parts;
+  std::vector<Question> nearer = questions;
+  for (const int frames_left_out : kGaps) {
+    if (frames_left_out == gap) continue;
+    examiner.askAll(thinned(examiner.leaving.askable(frames_left_out), kMaxFrames), frames_left_out,
+                    nearer);
+  }
+  c.temperature =
+      kLaterTours * LossByTemperature(nearer, examiner.places(), parts, c).bestTemperature();
+  c.log_loss =
+      LossByTemperature(questions, examiner.places(), parts, c).at(c.temperature, &c.accuracy);
+}
+
+/// From which novelty on a place is unknown, and how often that notices an unknown one.
+/// @param asked the frames of `questions`, which left out `gap`.
+void learnNovelty(const std::vector<Question>& questions, const std::vector<std::size_t>& asked,
+                  int gap, Examiner& examiner, FusionCalibration& c) {
+  std::vector<double> novelties;
+  for (const Question& q : questions) novelties.push_back(noveltyOf(c, q.nearest));
+  c.unknown_novelty = quantile(novelties, 1.0 - kUnknownRate);
+  std::size_t noticed = 0, strangers = 0;
+  for (const std::size_t f : thinned(asked, kMaxFrames / 4)) {
+    const Question q = examiner.ask(f, examiner.leaving.blockedFor(f, gap, true));
+    if (std::isinf(q.nearest.front())) continue;  // no other place was learned
+    ++strangers;
+    noticed += noveltyOf(c, q.nearest) > c.unknown_novelty;
+  }
+  if (strangers > 0) {
+    c.unknown_noticed = static_cast<double>(noticed) / static_cast<double>(strangers);
+  }
+}
 
 }  // namespace
 
@@ -383,15 +483,15 @@ FusionCalibration calibrateFusion(const Samples& samples, int places, double bet
   for (std::size_t p = 0; p < c.parts.size(); ++p) {
     c.parts[p].weight = c.parts[p].near_weight = priorWeight(samples.parts[p]);
   }
-  LeavingOut leaving(samples, frames);
+  Examiner examiner(samples, places, beta, frames, exemplars);
   int gap = LeavingOut::kWholeTour;
-  std::vector<std::size_t> asked = leaving.askable(gap);
+  std::vector<std::size_t> asked = examiner.leaving.askable(gap);
   if (static_cast<double>(asked.size()) < kLeastShare * static_cast<double>(frames.count())) {
     gap = kStretch;
-    asked = leaving.askable(gap);
+    asked = examiner.leaving.askable(gap);
   }
   if (asked.size() < kLeastFrames) {
-    learnTypicalDistances(samples, places, beta, frames, exemplars, c);
+    learnTypicalDistances(examiner, c);
     for (std::size_t p = 0; p < c.parts.size(); ++p) {
       if (samples.parts[p].learned_elsewhere) c.parts[p].weight = c.parts[p].near_weight = 0.0;
     }
@@ -400,63 +500,12 @@ FusionCalibration calibrateFusion(const Samples& samples, int places, double bet
   c.left_out = gap == LeavingOut::kWholeTour ? "tours" : "stretches";
   asked = thinned(asked, kMaxFrames);
   c.frames = asked.size();
-  const auto askAll = [&](const std::vector<std::size_t>& which, int left_out,
-                          std::vector<Question>& questions) {
-    for (const std::size_t f : which) {
-      questions.push_back(
-          ask(samples, places, beta, frames, f, leaving.blockedFor(f, left_out, false), exemplars));
-    }
-  };
   std::vector<Question> questions;
-  askAll(asked, gap, questions);
-  const auto learned = [&](const std::vector<Question>& from) {
-    std::vector<double> weights;
-    for (const SignaturePart& part : samples.parts) weights.push_back(priorWeight(part));
-    Objective objective(from, places);
-    learnWeights(objective, samples.parts, weights);
-    return weights;
-  };
-  std::vector<double> weights = learned(questions);
-  for (std::size_t p = 0; p < c.parts.size(); ++p) c.parts[p].weight = weights[p];
-  learnRanges(questions, c);
-
-  std::vector<Question> next;
-  for (const int g : kNextFrames) askAll(thinned(leaving.askable(g), kMaxFrames / 2), g, next);
-  weights = learned(next);
-  // How sure the sum is to be is the temperature's matter: near frames only share it out anew.
-  double far_sum = 0.0;
-  for (const PartCalibration& part : c.parts) far_sum += part.weight;
-  const double scale = far_sum / std::accumulate(weights.begin(), weights.end(), 0.0);
-  for (double& w : weights) w = std::min(kMaxWeight, scale * w);
-  for (std::size_t p = 0; p < c.parts.size(); ++p) {
-    c.parts[p].near_weight = weights[p];
-    c.parts[p].near_median = medianNearest(next, p);
-  }
-
-  std::vector<Question> nearer = questions;
-  for (const int frames_left_out : kGaps) {
-    if (frames_left_out == gap) continue;
-    askAll(thinned(leaving.askable(frames_left_out), kMaxFrames), frames_left_out, nearer);
-  }
-  c.temperature =
-      kLaterTours * LossByTemperature(nearer, places, samples.parts, c).bestTemperature();
-  c.log_loss =
-      LossByTemperature(questions, places, samples.parts, c).at(c.temperature, &c.accuracy);
-
-  std::vector<double> novelties;
-  for (const Question& q : questions) novelties.push_back(noveltyOf(c, q.nearest));
-  c.unknown_novelty = quantile(novelties, 1.0 - kUnknownRate);
-  std::size_t noticed = 0, strangers = 0;
-  for (const std::size_t f : thinned(asked, kMaxFrames / 4)) {
-    const Question q =
-        ask(samples, places, beta, frames, f, leaving.blockedFor(f, gap, true), exemplars);
-    if (std::isinf(q.nearest.front())) continue;  // no other place was learned
-    ++strangers;
-    noticed += noveltyOf(c, q.nearest) > c.unknown_novelty;
-  }
-  if (strangers > 0) {
-    c.unknown_noticed = static_cast<double>(noticed) / static_cast<double>(strangers);
-  }
+  examiner.askAll(asked, gap, questions);
+  learnFar(questions, examiner, c);
+  learnNear(examiner, c);
+  learnTemperature(questions, gap, examiner, c);
+  learnNovelty(questions, asked, gap, examiner, c);
   return c;
 }
 

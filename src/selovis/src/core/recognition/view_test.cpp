@@ -160,28 +160,11 @@ void ViewTest::remember(const ViewTestFrame& frame, double looks, const std::vec
   }
 }
 
-ViewTestState ViewTest::update(const ViewTestFrame& frame) {
-  const double seconds = std::max(0.0, frame.seconds);
-  clock_ += seconds;
-  ViewTestState state;
-  const double total = views_.compare(*frame.distances, kBeta);
-  if (!frame.base || !frame.base->isFinite()) {
-    reset();
-    return state;
-  }
-  state.tested = true;
-  mean_ = total / static_cast<double>(views_.views().size());
-  moveRivals(frame);
-  const hyselam::Pose2 camera = *frame.base * frame.camera_in_base;
-  LearnedViews::Regression seen;
-  const double at_pose = likelihoodAt(camera, &seen);
-  state.coverage = seen.weight / (seen.weight + kHalfLearned);
-  addRivals(frame, camera);
+std::vector<int> ViewTest::weighRivals(const ViewTestFrame& frame, double looks, double at_pose,
+                                       ViewTestState& state) {
   const bool scanned = fit_ != nullptr && frame.scan != nullptr;
   const double scan_at_pose =
       scanned ? fit_->best(*frame.scan, *frame.base, kKnownReach, kKnownTurn).fit : 0.0;
-
-  const double looks = std::min(1.0, seconds / params_.correlation_time);
   double lead = -1.0;
   std::set<int> spoken_for;
   for (RivalPose& r : rivals_) {
@@ -207,11 +190,14 @@ ViewTestState ViewTest::update(const ViewTestFrame& frame) {
       state.increment = looks * r.log_ratio;
     }
   }
-  if (params_.remember) remember(frame, looks, {spoken_for.begin(), spoken_for.end()});
+  return {spoken_for.begin(), spoken_for.end()};
+}
+
+void ViewTest::dropRivals(const hyselam::Pose2& base) {
   rivals_.erase(std::remove_if(rivals_.begin(), rivals_.end(),
                                [&](const RivalPose& r) {
                                  return r.evidence <= 0.0 ||
-                                        isNear(r.base, *frame.base, kSameRival, kSameRivalTurn);
+                                        isNear(r.base, base, kSameRival, kSameRivalTurn);
                                }),
                 rivals_.end());
   std::stable_sort(rivals_.begin(), rivals_.end(),
@@ -226,6 +212,29 @@ ViewTestState ViewTest::update(const ViewTestFrame& frame) {
         rivals_.end());
   }
   if (rivals_.size() > kMaxRivals) rivals_.resize(kMaxRivals);
+}
+
+ViewTestState ViewTest::update(const ViewTestFrame& frame) {
+  const double seconds = std::max(0.0, frame.seconds);
+  clock_ += seconds;
+  ViewTestState state;
+  const double total = views_.compare(*frame.distances, kBeta);
+  if (!frame.base || !frame.base->isFinite()) {
+    reset();
+    return state;
+  }
+  state.tested = true;
+  mean_ = total / static_cast<double>(views_.views().size());
+  moveRivals(frame);
+  const hyselam::Pose2 camera = *frame.base * frame.camera_in_base;
+  LearnedViews::Regression seen;
+  const double at_pose = likelihoodAt(camera, &seen);
+  state.coverage = seen.weight / (seen.weight + kHalfLearned);
+  addRivals(frame, camera);
+  const double looks = std::min(1.0, seconds / params_.correlation_time);
+  const std::vector<int> spoken_for = weighRivals(frame, looks, at_pose, state);
+  if (params_.remember) remember(frame, looks, spoken_for);
+  dropRivals(*frame.base);
   if (!rivals_.empty()) {
     state.evidence = rivals_.front().evidence;
     const double next = rivals_.size() > 1 ? rivals_[1].evidence : 0.0;
