@@ -323,7 +323,7 @@ nlohmann::json errorOf(const Run& run, const std::vector<hyselam::StampedPose2>&
   const TrajectoryError e = trajectoryError(ownTrajectory(engine, run.saved_scans), reference);
   const FalseLoops false_loops = falseLoops(engine, reference);
   const auto without_weight = std::count_if(engine.loops().begin(), engine.loops().end(),
-                                            [](const SlamLoop& l) { return !isBelieved(l); });
+                                            [](const SlamLoop& l) { return !isUsed(l); });
   return {{"poses", e.poses},
           {"mean_m", e.mean},
           {"rms_m", e.rms},
