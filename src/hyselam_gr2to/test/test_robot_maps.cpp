@@ -9,11 +9,11 @@
 
 #include "hyselam_common/pose2.hpp"
 #include "hyselam_gr2to/segmentation/place_segmentation.hpp"
-#include "segmentation/agglomeration.hpp"
 #include "segmentation/chamfer_distance.hpp"
 #include "segmentation/corridor_basins.hpp"
 #include "segmentation/furniture.hpp"
 #include "segmentation/geometric_evidence.hpp"
+#include "segmentation/prepared_basins.hpp"
 #include "segmentation/ray_fans.hpp"
 #include "segmentation/straight_corridors.hpp"
 
@@ -129,14 +129,14 @@ TEST(StraightCorridors, ARoomNotMuchLongerThanWideIsNone) {
 namespace {
 
 /// A corridor of 2 m with something `depth` deep that stands open to it over 4 m.
-PreparedPlaces besideCorridor(double depth) {
+PreparedBasins besideCorridor(double depth) {
   OccupancyGrid grid = unseen(28, 12);
   room(grid, 2, 2, 26, 4);
   room(grid, 12, 4, 16, 4.0 + depth);
-  return preparePlaces(grid, {}, Preparation::kFull);
+  return prepareBasins(grid, {}, Preparation::kFull);
 }
 
-int basinAt(const PreparedPlaces& places, double x, double y) {
+int basinAt(const PreparedBasins& places, double x, double y) {
   const cv::Point cell(static_cast<int>(std::lround(x / kCell)) - places.space.origin.x,
                        static_cast<int>(std::lround(y / kCell)) - places.space.origin.y);
   return places.basins.labels.at<int>(cell);
@@ -145,19 +145,19 @@ int basinAt(const PreparedPlaces& places, double x, double y) {
 }  // namespace
 
 TEST(CorridorBasins, ARoomThatStandsOpenIsCutOff) {
-  const PreparedPlaces places = besideCorridor(5.0);
+  const PreparedBasins places = besideCorridor(5.0);
   ASSERT_FALSE(places.context.corridors.corridors.empty());
   EXPECT_NE(basinAt(places, 14.0, 3.5), basinAt(places, 14.0, 4.5));
 }
 
 TEST(CorridorBasins, ANicheIsNot) {
-  const PreparedPlaces places = besideCorridor(1.0);
+  const PreparedBasins places = besideCorridor(1.0);
   ASSERT_FALSE(places.context.corridors.corridors.empty());
   EXPECT_EQ(basinAt(places, 14.0, 3.5), basinAt(places, 14.0, 4.5));
 }
 
 TEST(GeometricEvidence, SpeaksAgainstARoomAndACorridorBeingOne) {
-  const PreparedPlaces places = besideCorridor(5.0);
+  const PreparedBasins places = besideCorridor(5.0);
   const RegionAdjacencyGraph graph(places.clearance, places.basins, places.space.resolution,
                                    places.context);
   const int corridor = basinAt(places, 14.0, 3.5), open_room = basinAt(places, 14.0, 4.5);
@@ -210,16 +210,16 @@ namespace {
 
 /// A hall of 12 m by 8 m with two things across its middle that leave 1.2 m between them;
 /// `to_wall`: they reach to the walls, else 0.6 m are left there.
-PreparedPlaces acrossAHall(bool to_wall) {
+PreparedBasins acrossAHall(bool to_wall) {
   OccupancyGrid grid = unseen(16, 12);
   room(grid, 2, 2, 14, 10);
   const double off = to_wall ? 0.0 : 0.6;
   fill(grid, 7.6, 2.0 + off, 8.4, 5.4, OccupancyGrid::kOccupied);
   fill(grid, 7.6, 6.6, 8.4, 10.0 - off, OccupancyGrid::kOccupied);
-  return preparePlaces(grid, {}, Preparation::kFull);
+  return prepareBasins(grid, {}, Preparation::kFull);
 }
 
-RegionAdjacencyGraph graphOf(const PreparedPlaces& places) {
+RegionAdjacencyGraph graphOf(const PreparedBasins& places) {
   return RegionAdjacencyGraph(places.clearance, places.basins, places.space.resolution,
                               places.context);
 }
@@ -227,8 +227,8 @@ RegionAdjacencyGraph graphOf(const PreparedPlaces& places) {
 }  // namespace
 
 TEST(Furniture, SupportsNoBorderAsWallsDo) {
-  const PreparedPlaces desks = acrossAHall(false), walls = acrossAHall(true);
-  const auto evidence = [](const PreparedPlaces& places) {
+  const PreparedBasins desks = acrossAHall(false), walls = acrossAHall(true);
+  const auto evidence = [](const PreparedBasins& places) {
     const int left = basinAt(places, 5.0, 6.0), right = basinAt(places, 11.0, 6.0);
     EXPECT_NE(left, right);
     const RegionAdjacencyGraph graph = graphOf(places);
@@ -249,7 +249,7 @@ TEST(GeometricEvidence, NothingNarrowsABentCorridorAndADoorDoes) {
       if (r > 7.9 && r < 10.1) grid.at({x, y}) = OccupancyGrid::kOccupied;
       if (r > 8.0 && r < 10.0 && !gone) grid.at({x, y}) = OccupancyGrid::kFree;
     }
-  const PreparedPlaces bent = preparePlaces(grid, {}, Preparation::kFull);
+  const PreparedBasins bent = prepareBasins(grid, {}, Preparation::kFull);
   EXPECT_TRUE(bent.context.corridors.corridors.empty());
   const RegionAdjacencyGraph ring = graphOf(bent);
   int borders = 0;
@@ -267,7 +267,7 @@ TEST(GeometricEvidence, NothingNarrowsABentCorridorAndADoorDoes) {
   room(rooms, 2, 2, 7, 8);
   room(rooms, 7.2, 2, 13, 8);
   fill(rooms, 7.0, 4.5, 7.2, 5.5, OccupancyGrid::kFree);
-  const PreparedPlaces places = preparePlaces(rooms, {}, Preparation::kFull);
+  const PreparedBasins places = prepareBasins(rooms, {}, Preparation::kFull);
   const RegionAdjacencyGraph graph = graphOf(places);
   const int left = basinAt(places, 4.5, 5.0), right = basinAt(places, 10.0, 5.0);
   ASSERT_EQ(1u, graph.node(left).borders.count(right));
@@ -282,7 +282,7 @@ TEST(CorridorBasins, WhereTwoCorridorsCrossNothingPartsThem) {
   fill(grid, 15, 11.8, 17, 14.2, OccupancyGrid::kFree);
   room(grid, 17, 4, 22, 8);  // stands open, so that the basin of both is cut
   fill(grid, 16.8, 4, 17.2, 8, OccupancyGrid::kFree);
-  const PreparedPlaces places = preparePlaces(grid, {}, Preparation::kFull);
+  const PreparedBasins places = prepareBasins(grid, {}, Preparation::kFull);
   ASSERT_EQ(2u, places.context.corridors.corridors.size());
   const int one = basinAt(places, 16.0, 13.0), open_room = basinAt(places, 20.0, 6.0);
   const int other = basinAt(places, 16.0, 10.0);
@@ -368,7 +368,7 @@ OccupancyGrid turned(const OccupancyGrid& grid, int quarters) {
 TEST(RobotMaps, ARightAngleChangesNothing) {
   const OccupancyGrid grid = wing();
   const auto figures = [](const OccupancyGrid& map) {
-    const PreparedPlaces places = preparePlaces(map, {}, Preparation::kFull);
+    const PreparedBasins places = prepareBasins(map, {}, Preparation::kFull);
     std::vector<double> lengths;
     for (const StraightCorridor& c : places.context.corridors.corridors)
       lengths.push_back(cv::norm(c.end() - c.start()));

@@ -1,14 +1,8 @@
 #include "agglomeration.hpp"
 
-#include <algorithm>
-#include <future>
 #include <queue>
 #include <utility>
 #include <vector>
-
-#include "alongside.hpp"
-#include "chamfer_distance.hpp"
-#include "furniture.hpp"
 
 namespace hyselam_topo {
 namespace {
@@ -47,30 +41,6 @@ void agglomerate(RegionAdjacencyGraph& graph, const OnePlace& odds) {
     version(best.b) = -1;
     for (const auto& [other, border] : graph.node(best.a).borders) consider(best.a, other, border);
   }
-}
-
-PreparedPlaces preparePlaces(const hyselam::OccupancyGrid& grid, const SegmentationParams& params,
-                             Preparation preparation) {
-  PreparedPlaces prepared;
-  const bool full = preparation == Preparation::kFull;
-  prepared.space = findFreeSpace(grid, params, full);
-  if (prepared.space.free.empty()) return prepared;
-  // The free space alone tells where furniture and corridors are, and where basins.
-  std::future<std::vector<StraightCorridor>> corridors;
-  if (full) {
-    corridors = alongside([&space = prepared.space, &furniture = prepared.context.furniture] {
-      furniture = findFurniture(space);
-      return findStraightCorridors(space, furniture);
-    });
-  }
-  prepared.clearance = chamferDistance(prepared.space.free);
-  BasinParams basins;
-  basins.smallest = params.min_place_area;
-  prepared.basins = findBasins(prepared.clearance, prepared.space.resolution, basins);
-  if (!full) return prepared;
-  prepared.context.corridors = cutAlongCorridors(corridors.get(), prepared.clearance,
-                                                 prepared.space.resolution, prepared.basins);
-  return prepared;
 }
 
 }  // namespace hyselam_topo

@@ -13,6 +13,7 @@
 #include "hyselam_gr2to/map_builder/doors.hpp"
 #include "hyselam_gr2to/segmentation/border_model.hpp"
 #include "number_places.hpp"
+#include "prepared_basins.hpp"
 #include "ray_fans.hpp"
 
 namespace hyselam_topo {
@@ -179,7 +180,7 @@ PlaceSegmentation segmentPlaces(const hyselam::OccupancyGrid& grid,
   params.validate();
   PlaceSegmentation result;
   result.labels = cv::Mat(grid.geometry.height, grid.geometry.width, CV_16U, cv::Scalar(0));
-  const PreparedPlaces prepared = preparePlaces(grid, params, Preparation::kFull);
+  const PreparedBasins prepared = prepareBasins(grid, params, Preparation::kFull);
   if (prepared.basins.count == 0) return result;
 
   RegionAdjacencyGraph graph(prepared.clearance, prepared.basins, prepared.space.resolution,

@@ -17,7 +17,7 @@
 #include "hyselam_sim/generate_plan.hpp"
 #include "hyselam_sim/plan_geometry.hpp"
 #include "hyselam_sim/rasterize.hpp"
-#include "segmentation/agglomeration.hpp"
+#include "segmentation/prepared_basins.hpp"
 
 namespace hyselam_topo {
 namespace {
@@ -60,7 +60,7 @@ Example prepare(const std::string& name, const std::string& kind, const std::str
   // A basin's cells are looked up in the map of the rooms: neither joined nor resampled.
   SegmentationParams as_it_is = options.segmentation;
   as_it_is.working_resolution = grid.geometry.resolution;
-  const PreparedPlaces p = preparePlaces(grid, as_it_is, Preparation::kBasinsAlone);
+  const PreparedBasins p = prepareBasins(grid, as_it_is, Preparation::kBasinsAlone);
   double most = 0;
   cv::minMaxLoc(rooms, nullptr, &most);
   Example e{name,

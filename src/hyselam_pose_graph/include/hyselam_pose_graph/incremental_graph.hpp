@@ -1,4 +1,6 @@
-// A pose graph that grows while it is used: the back end of online SLAM.
+// A pose graph that grows while it is used: a back end for online SLAM with covariances at any
+// time. ngram_slam does not use it: it optimizes copies of its graph on another thread
+// (GraphOptimizer).
 #pragma once
 
 #include <memory>

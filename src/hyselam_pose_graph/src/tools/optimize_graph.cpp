@@ -11,6 +11,10 @@ namespace {
 
 using namespace hyselam_pose_graph;  // NOLINT: a program, not a header
 
+/// Edges of less weight are counted as refused; more than those that are not used any more at all,
+/// which begin at kAgreeingWeight.
+constexpr double kRefusedWeight = 0.5;
+
 struct Options {
   std::string in, out;
   OptimizeParams params;
@@ -36,7 +40,7 @@ nlohmann::json run(const Options& o) {
                       {"solve_ms", time.count()}};
   if (!result.weights.empty()) {
     int refused = 0;
-    for (const double w : result.weights) refused += w < 0.5 ? 1 : 0;
+    for (const double w : result.weights) refused += w < kRefusedWeight ? 1 : 0;
     j["refused_edges"] = refused;
     j["followed_all"] = result.followed_all;
   }

@@ -116,7 +116,7 @@ visualization_msgs::MarkerArray sharedMapMarkers(const SharedMapState& shared,
   for (const SlamLoop& l : shared.state.loops) {
     const SlamKeyframe& older = keyframes[static_cast<std::size_t>(l.older)];
     const SlamKeyframe& newer = keyframes[static_cast<std::size_t>(l.newer)];
-    if (l.weight < kMinLoopWeight || robotOf(older) == robotOf(newer)) continue;
+    if (!isUsed(l) || robotOf(older) == robotOf(newer)) continue;
     ties.points.push_back(at(older.pose, 0.15));
     ties.points.push_back(at(newer.pose, 0.15));
   }

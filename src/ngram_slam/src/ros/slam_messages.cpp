@@ -14,6 +14,9 @@ using visualization_msgs::Marker;
 
 namespace {
 
+/// Loops of less weight are drawn as contradicting, a while before they are not used (isUsed()).
+constexpr double kDoubtfulWeight = 0.5;
+
 geometry_msgs::Pose2D pose2d(const hyselam::Pose2& p) {
   geometry_msgs::Pose2D out;
   out.x = p.x;
@@ -243,7 +246,7 @@ visualization_msgs::MarkerArray slamMarkers(const std::vector<SlamKeyframe>& key
     if (!isShown(runOf(l.older)) || !isShown(runOf(l.newer))) continue;
     addLine(&lines, keyframes[static_cast<std::size_t>(l.older)].pose,
             keyframes[static_cast<std::size_t>(l.newer)].pose, 0.1,
-            l.weight < 0.5                       ? color(0.9, 0.1, 0.1)
+            l.weight < kDoubtfulWeight           ? color(0.9, 0.1, 0.1)
             : l.source == LoopSource::kNgram     ? color(0.85, 0.1, 0.75)
             : l.source == LoopSource::kSignature ? color(0.95, 0.55, 0.1)
                                                  : color(0.1, 0.65, 0.25));

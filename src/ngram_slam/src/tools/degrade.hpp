@@ -1,15 +1,17 @@
-// What makes a recording worse, on purpose: wheels that stand still in the odometry, scans that are
-// missing, a laser that tf has in the wrong place.
+// What makes a recording worse, on purpose: odometry with errors, wheels that stand still in it,
+// scans that are missing, a laser that tf has in the wrong place.
 #pragma once
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/rng.hpp"
 #include "hyselam_common/robot_log.hpp"
 
 namespace ngram_slam {
@@ -86,6 +88,31 @@ inline void freezeOdometry(const Again& trouble, std::vector<hyselam::StampedPos
     }
     last = pose;
     o.pose = told;
+  }
+}
+
+/// Adds errors to each motion: standard deviations of `factor` times 1 % of the distance in both
+/// directions, and of 1 % of the rotation and 0.01 rad a meter in heading.
+inline void addOdometryNoise(double factor, std::uint64_t seed,
+                             std::vector<hyselam::StampedPose2>* odometry) {
+  hyselam::Rng rng(seed);
+  hyselam::Pose2 last, noisy;
+  for (std::size_t i = 0; i < odometry->size(); ++i) {
+    hyselam::Pose2& pose = (*odometry)[i].pose;
+    if (i == 0) {
+      last = noisy = pose;
+      continue;
+    }
+    hyselam::Pose2 step = between(last, pose);
+    last = pose;
+    const double distance = std::hypot(step.x, step.y), angle = std::abs(step.theta);
+    // White along the path: variances of steps add up to that of a meter.
+    const double stddev = 0.01 * factor * std::sqrt(distance);
+    step.x += rng.gaussian(0.0, stddev);
+    step.y += rng.gaussian(0.0, stddev);
+    step.theta += rng.gaussian(0.0, stddev + 0.01 * factor * angle);
+    noisy = noisy * step;
+    pose = noisy;
   }
 }
 

@@ -233,8 +233,7 @@ bool isTiedWrongly(const SlamEngine& engine, const Log& log, std::uint32_t run) 
   return std::any_of(engine.loops().begin(), engine.loops().end(), [&](const SlamLoop& l) {
     const SlamKeyframe& older = engine.keyframes()[static_cast<std::size_t>(l.older)];
     const SlamKeyframe& newer = engine.keyframes()[static_cast<std::size_t>(l.newer)];
-    if (!l.far || l.weight < kMinLoopWeight || (older.run == run) == (newer.run == run))
-      return false;
+    if (!l.far || !isUsed(l) || (older.run == run) == (newer.run == run)) return false;
     const auto error = loopError(older, newer, l.measured, log.reference);
     return error && error->isFalse();
   });

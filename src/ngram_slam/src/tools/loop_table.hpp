@@ -71,18 +71,13 @@ inline const char* foundBy(const SlamLoop& loop, std::size_t saved) {
   return loop.far ? "outline" : "proximity";
 }
 
-/// Whether the last optimization went by it.
-inline bool isBelieved(const SlamLoop& loop) {
-  return loop.weight >= kMinLoopWeight;
-}
-
 /// near + far + unverified + supposed + saved == total, and
 /// far == far_by_words + far_by_signatures + far_by_outline.
 struct LoopCounts {
   std::size_t total = 0, near = 0, far = 0, unverified = 0, supposed = 0, saved = 0;
   std::size_t far_by_words = 0, far_by_signatures = 0, far_by_outline = 0;
   std::size_t near_by_words = 0;  ///< of the near ones
-  std::size_t not_believed = 0;   ///< of all
+  std::size_t not_believed = 0;   ///< of all: not isUsed()
 
   LoopCounts(const std::vector<SlamLoop>& loops, std::size_t saved_keyframes)
       : total(loops.size()) {
@@ -99,7 +94,7 @@ struct LoopCounts {
                                                 : far_by_outline);
       }
       if (kind == LoopKind::kNear && l.source == LoopSource::kNgram) ++near_by_words;
-      if (!isBelieved(l)) ++not_believed;
+      if (!isUsed(l)) ++not_believed;
     }
   }
 };
@@ -146,7 +141,8 @@ inline std::optional<double> probabilityOf(const SlamLoop& loop, const std::vect
       loop, companyOf(loop, far, engine.keyframes(), engine.connections(), engine.params().loop));
 }
 
-/// loops.csv: README.md names the columns. a is the newer end, as in matches.csv.
+/// loops.csv: README.md names the columns. a is the newer end, as in matches.csv; believed:
+/// isUsed().
 /// @throws hyselam::InputError
 inline void writeLoops(const std::string& path, const SlamEngine& engine,
                        std::size_t saved_keyframes) {
@@ -164,7 +160,7 @@ inline void writeLoops(const std::string& path, const SlamEngine& engine,
           << l.newer << ',' << l.older << ',' << a.run << ',' << b.run << ',' << a.path_length
           << ',' << b.path_length << ',' << l.measured.x << ',' << l.measured.y << ','
           << l.measured.theta << ',' << toString(kindOf(l, saved_keyframes)) << ','
-          << foundBy(l, saved_keyframes) << ',' << l.weight << ',' << (isBelieved(l) ? 1 : 0) << ','
+          << foundBy(l, saved_keyframes) << ',' << l.weight << ',' << (isUsed(l) ? 1 : 0) << ','
           << probabilityOf(l, far, engine).value_or(-1.0) << ',' << l.inlier_ratio << ',' << l.fit
           << '\n';
     }

@@ -18,7 +18,8 @@ inline double rounded(double meters) {
 }
 
 /// One trajectory through a building, over the map in the file `map` beside the report. Loops by
-/// what found them (foundBy()), those that are not believed apart. `saved_keyframes`: kindOf().
+/// what found them (foundBy()), those that are not used (isUsed()) apart. `saved_keyframes`:
+/// kindOf().
 inline nlohmann::json figureJson(const std::string& title, const std::string& map,
                                  const SlamEngine& engine, std::size_t saved_keyframes) {
   using nlohmann::json;
@@ -33,7 +34,7 @@ inline nlohmann::json figureJson(const std::string& title, const std::string& ma
   for (const SlamLoop& l : engine.loops()) {
     const hyselam::Pose2& a = engine.keyframes()[static_cast<std::size_t>(l.older)].pose;
     const hyselam::Pose2& b = engine.keyframes()[static_cast<std::size_t>(l.newer)].pose;
-    loops[isBelieved(l) ? foundBy(l, saved_keyframes) : "not_believed"].push_back(
+    loops[isUsed(l) ? foundBy(l, saved_keyframes) : "not_believed"].push_back(
         {rounded(a.x), rounded(a.y), rounded(b.x), rounded(b.y)});
   }
   for (const RegionNode& n : regionGraph(engine).nodes) {

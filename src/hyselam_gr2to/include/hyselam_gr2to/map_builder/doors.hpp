@@ -29,9 +29,8 @@ struct DoorParams {
 /// A door line for each border between two places. The line leads from wall to wall where the
 /// passage is narrowest. It is a real door if it has a door's width and both places are wider than
 /// it within a short way behind it: jambs on both sides. Two borders of the same places with the
-/// same line give one door. Of
-/// several between the same places those that end at something that stands free, less than 2.5 m
-/// across, are open borders. Sorted by (place_a, place_b, a).
+/// same line give one door. Of several between the same places those that end at something that
+/// stands free, less than 2.5 m across, are open borders. Sorted by (place_a, place_b, a).
 /// @throws hyselam::ParameterError for a parameter out of range, hyselam::InputError if the labels
 /// do not fit the grid.
 std::vector<DoorLine> refineDoors(const hyselam::OccupancyGrid& grid, const cv::Mat& labels,

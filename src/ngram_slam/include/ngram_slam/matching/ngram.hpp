@@ -19,7 +19,7 @@ inline bool operator==(const WordPair& a, const WordPair& b) {
   return a.newer == b.newer && a.older == b.older;
 }
 
-/// Whether two words may belong to a match when `levels` levels are in use? They match by the
+/// Whether two words may belong to a match when `levels` levels are in use: they match by the
 /// tolerances, the older one reversed if the direction is, and the older one ends before the newer
 /// one begins.
 bool mayPair(const WordLattice& text, const WordTolerance& tolerance, const WordPair& pair,

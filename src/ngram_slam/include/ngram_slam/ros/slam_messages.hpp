@@ -27,9 +27,6 @@ nav_msgs::Path pathMsg(const std::vector<SlamKeyframe>& keyframes, const std_msg
 /// A match as SLAM keeps it: words by the observations, chance and alignment not known.
 hyselam_msgs::WordMatch matchMsg(const NgramRecognizer& recognizer, const SlamMatch& match);
 
-/// Namespaces: "path", lines between keyframes; "loops", green by proximity, magenta by words, red
-/// where they contradict others; "regions", one ball per region coloured by class; "region_links",
-/// lines between them, those of loops in magenta; "region_names".
 /// Whether the pose is to be trusted: not while it is only supposed where the run began.
 /// @param update_ms wall time of the last scan.
 hyselam_msgs::LocalizationStatus statusMsg(const SlamEngine& engine, double update_ms,
@@ -42,6 +39,10 @@ hyselam_msgs::MapChangeArray changesMsg(const std::vector<MapChange>& changes, d
 /// thing of some size.
 visualization_msgs::MarkerArray changeMarkers(const std::vector<MapChange>& changes, double cell,
                                               const std_msgs::Header& header);
+
+/// Namespaces: "path", lines between keyframes; "loops", green by proximity, magenta by words,
+/// orange by signatures, red where they contradict others; "regions", one ball per region coloured
+/// by class; "region_links", lines between them, those of loops in magenta; "region_names".
 /// @param shown as SlamEngine::shownRuns(); the current run is always drawn.
 visualization_msgs::MarkerArray slamMarkers(const std::vector<SlamKeyframe>& keyframes,
                                             const std::vector<bool>& shown,

@@ -147,9 +147,10 @@ class PresentMap {
   long revision_ = -1;
 };
 
-/// The cells of which `after` (the keyframes that stay, without what was settled before) does not
-/// tell what `before` does. `map`: by run, the map that it lies in; each is settled by itself.
-/// `kept`: of the keyframes. Their numbers are those of `before`. `map`: as it is drawn.
+/// The cells of which the `kept` keyframes alone do not tell what all of them do together with what
+/// was settled `before`, and those that have changed. `kept`: by keyframe; `map_of_run`: the map
+/// that a run lies in, each is settled by itself; `map`: how it is drawn. Numbers of keyframes stay
+/// as they are.
 SettledMap settledMap(const std::vector<SlamKeyframe>& keyframes, const std::vector<bool>& kept,
                       const std::vector<std::uint32_t>& map_of_run, const SettledMap& before,
                       const hyselam::OccupancyMapperParams& map, const PresentMapParams& params);

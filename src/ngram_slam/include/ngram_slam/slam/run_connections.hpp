@@ -15,7 +15,7 @@ class RunConnections {
  public:
   /// Each run is a map of its own.
   RunConnections() = default;
-  /// Of the loops that are used (kMinLoopWeight).
+  /// Of the loops that are used (isUsed()).
   RunConnections(const std::vector<SlamKeyframe>& keyframes, const std::vector<SlamLoop>& loops);
 
   void connect(std::uint32_t a, std::uint32_t b);

@@ -1,10 +1,11 @@
 // SLAM: computes poses, graph and loop closures from scans and odometry. No clock, threads or file
 // I/O.
 //
-// An observation is the free-space density (share of the cells around the robot that are free and
-// connected with it) at a pose, by default one per 0.1 m of path; a word is a segment of the path
-// with one class of density; an n-gram match is a sequence of words that occurs earlier in the
-// path.
+// The engine owns the state (SlamState) and what recognizes places: words (WordPlaces), signatures
+// (SignaturePlaces), the drawn maps of other runs (KnownMaps). What is slow (scans of loops to be
+// compared, signatures, a search of drawn maps, the graph's optimization) it hands out as SlamJob;
+// BackgroundJobs says when results count. Maps are drawn of its values, outside: PresentMap. Terms:
+// slam_types.hpp; those of words: ngram_matcher.hpp.
 #pragma once
 
 #include <deque>
@@ -324,7 +325,7 @@ class SlamEngine {
       const RunStart& start, const hyselam_scan_matching::SurfacePoints& points) const;
   hyselam_scan_matching::SurfaceMap mapAround(const RunStart& start) const;
 
-  // Where a run lies in other maps, in run_places.cpp.
+  // Where a run lies in other maps, in slam_run_places.cpp.
   std::uint32_t currentRun() const { return state_.keyframes.back().run; }
   bool isUntied() const;
   bool mayBeDoubted() const;

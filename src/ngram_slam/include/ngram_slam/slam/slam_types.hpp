@@ -1,4 +1,14 @@
 // State of SLAM as plain values: keyframes, the edges between them, loop closures, n-gram matches.
+//
+// Terms (those of words: ngram_matcher.hpp):
+// - Run: one uninterrupted drive, with an odometry frame of its own. Session: the runs since the
+//   process began, or those of one saved map.
+// - Map: the runs that loops join (RunConnections). Poses of two maps cannot be compared.
+// - Tie: loops between a run, or a map, and another one, which make them one map.
+// - Near loop: the graph knows where to look, and one scan decides. Far loop: it does not; a wide
+//   search found the place, which counts when other far loops agree (far_loops.hpp).
+// - Place: what is around a keyframe, as something to be recognized: by words (WordPlaces), by
+//   signatures (SignaturePlaces), or by the last metres of a run on a drawn map (KnownMaps).
 #pragma once
 
 #include <cstdint>
@@ -24,14 +34,21 @@ struct SlamKeyframe {
   std::shared_ptr<const hyselam_scan_matching::SurfacePoints> points;  ///< the scan as surfaces
 };
 
-/// Where a scan that is no keyframe was taken.
+/// Where a scan was taken, as it moves with a keyframe: the scan itself is forgotten.
 struct PlacedScan {
   double stamp = 0.0;  ///< [s]
   int keyframe = 0;
   hyselam::Pose2 base_in_keyframe;
 };
 
-enum class LoopSource : std::uint8_t { kProximity, kNgram, kSignature };
+/// What proposed the place.
+enum class LoopSource : std::uint8_t {
+  /// Poses, or scans laid on what is known: near and far loops by the graph, starts of runs, places
+  /// on drawn maps, loops composed of those of dropped keyframes.
+  kProximity,
+  kNgram,     ///< a match of words
+  kSignature  ///< signatures of places
+};
 
 /// A loop of less weight contradicts the others so much that it is not used.
 constexpr double kMinLoopWeight = 0.3;
@@ -42,13 +59,20 @@ struct SlamLoop {
   hyselam::Pose2 measured;                                ///< newer in older
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< see PoseEdge
   LoopSource source = LoopSource::kProximity;
-  bool far = false;           ///< found by a wide search, accepted with consistent loops
-  double inlier_ratio = 0.0;  ///< fraction of the points on known surfaces, 0..1
+  bool far = false;  ///< found by a wide search, accepted with consistent loops
+  /// Fraction of the points on known surfaces, 0..1; 0: no scan bears the loop out (thesis mode, a
+  /// start that was told and where nothing fits).
+  double inlier_ratio = 0.0;
   /// Of what both segments observed of each other, the fraction on surfaces instead of in free
   /// space, in the direction in which it is less, 0..1.
   double fit = 1.0;
   double weight = 1.0;  ///< by the last optimization, 0..1; below 1: contradicts others
 };
+
+/// Whether the map goes by the loop: the last optimization left it enough weight.
+inline bool isUsed(const SlamLoop& loop) {
+  return loop.weight >= kMinLoopWeight;
+}
 
 /// An n-gram match between words of the path, and the result of its verification by scans.
 struct SlamMatch {

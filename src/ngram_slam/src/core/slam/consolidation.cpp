@@ -29,10 +29,6 @@ PoseEdge edgeOf(const SlamLoop& l) {
   return {l.older, l.newer, l.measured, l.weight * l.information};
 }
 
-bool isUsed(const SlamLoop& l) {
-  return l.weight >= kMinLoopWeight;
-}
-
 std::vector<Pose2> posesOf(const SlamState& state) {
   std::vector<Pose2> poses;
   for (const SlamKeyframe& k : state.keyframes) poses.push_back(k.pose);

@@ -304,7 +304,7 @@ bool MapMerger::excludes(const SlamLoop& loop) const {
 bool MapMerger::believeWithinMaps() {
   std::vector<SlamLoop> used, waiting, others, believed;
   for (const SlamLoop& l : state_.loops) {
-    if (l.far && l.weight >= kMinLoopWeight) used.push_back(l);
+    if (l.far && isUsed(l)) used.push_back(l);
   }
   for (const SlamLoop& l : pending_) {
     if (mapOfKeyframe(l.older) != mapOfKeyframe(l.newer) || excludes(l)) {
@@ -467,7 +467,7 @@ void MapMerger::rebuildPathLengths() {
     path_lengths_.addEdge(e.from, e.to, std::hypot(e.measured.x, e.measured.y));
   }
   for (const SlamLoop& l : state_.loops) {
-    if (l.weight >= kMinLoopWeight) {
+    if (isUsed(l)) {
       path_lengths_.addEdge(l.older, l.newer, params_.slam.loop.loop_path_length);
     }
   }
@@ -488,7 +488,7 @@ std::vector<MapMeeting> MapMerger::meetings() const {
   for (const SlamLoop& l : state_.loops) {
     MapMeeting* m = meetingOf(l);
     if (m == nullptr) continue;
-    if (l.weight < kMinLoopWeight) {
+    if (!isUsed(l)) {
       ++m->doubted;
       continue;
     }

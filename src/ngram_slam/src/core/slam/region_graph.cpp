@@ -41,7 +41,7 @@ RegionGraph graphOf(const SlamEngine& engine, const std::vector<SemanticRegion>&
   for (const SlamLoop& l : engine.loops()) {
     const std::int32_t a = node_of_keyframe[static_cast<std::size_t>(l.older)];
     const std::int32_t b = node_of_keyframe[static_cast<std::size_t>(l.newer)];
-    if (a < 0 || b < 0 || a == b || l.weight < kMinLoopWeight) continue;
+    if (a < 0 || b < 0 || a == b || !isUsed(l)) continue;
     edges.emplace(static_cast<std::uint32_t>(std::min(a, b)),
                   static_cast<std::uint32_t>(std::max(a, b)), RegionEdge::Kind::kLoop);
   }

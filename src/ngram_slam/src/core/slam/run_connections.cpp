@@ -15,7 +15,7 @@ std::uint32_t runOf(const std::vector<SlamKeyframe>& keyframes, int k) {
 RunConnections::RunConnections(const std::vector<SlamKeyframe>& keyframes,
                                const std::vector<SlamLoop>& loops) {
   for (const SlamLoop& l : loops) {
-    if (l.weight >= kMinLoopWeight) connect(runOf(keyframes, l.older), runOf(keyframes, l.newer));
+    if (isUsed(l)) connect(runOf(keyframes, l.older), runOf(keyframes, l.newer));
   }
 }
 

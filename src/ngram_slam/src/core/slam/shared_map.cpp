@@ -276,7 +276,7 @@ void SharedMap::apply(const Work& work, const MergedMaps& merged) {
   for (const SlamLoop& l : shared->state.loops) {
     const auto& older = keyframes[static_cast<std::size_t>(l.older)];
     const auto& newer = keyframes[static_cast<std::size_t>(l.newer)];
-    if (older.first == newer.first || l.weight < kMinLoopWeight) continue;
+    if (older.first == newer.first || !isUsed(l)) continue;
     ties_.push_back({work.keys[older.first], work.keys[newer.first], l});
     ties_.back().loop.older = static_cast<int>(older.second);
     ties_.back().loop.newer = static_cast<int>(newer.second);

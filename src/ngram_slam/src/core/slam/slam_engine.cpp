@@ -1,6 +1,7 @@
-// Scans of the engine: odometry, local map, keyframes. See slam_runs.cpp for the start of a run,
-// slam_steps.cpp for steps that are asked again, slam_loops.cpp for loops, slam_jobs.cpp for work
-// on another thread.
+// Scans of the engine: odometry, local map, keyframes. Its other parts: where odometry is doubted,
+// slam_doubt.cpp; steps that are asked again, slam_steps.cpp; the start of a run, slam_runs.cpp;
+// where it lies in earlier maps, slam_run_places.cpp; loops, slam_loops.cpp; work on another
+// thread, slam_jobs.cpp.
 #include "ngram_slam/slam/slam_engine.hpp"
 
 #include <algorithm>
@@ -377,16 +378,7 @@ void SlamEngine::rebuildLocalMap() {
 }
 
 hyselam_pose_graph::PoseGraph SlamEngine::graph() const {
-  hyselam_pose_graph::PoseGraph g;
-  for (std::size_t i = 0; i < state_.keyframes.size(); ++i) {
-    g.ids.push_back(static_cast<std::int64_t>(i));
-    g.poses.push_back(state_.keyframes[i].pose);
-  }
-  g.edges = state_.odometry;
-  for (const SlamLoop& l : state_.loops) {
-    g.edges.push_back({l.older, l.newer, l.measured, l.information});
-  }
-  return g;
+  return runGraph(state_, 0).graph;
 }
 
 std::vector<hyselam::StampedPose2> SlamEngine::trajectory() const {

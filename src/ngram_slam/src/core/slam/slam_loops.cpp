@@ -30,7 +30,7 @@ void SlamEngine::rebuildPathLengths() {
     path_lengths_.addEdge(e.from, e.to, std::hypot(e.measured.x, e.measured.y));
   }
   for (const SlamLoop& l : state_.loops) {
-    if (l.weight >= kMinLoopWeight) {
+    if (isUsed(l)) {
       path_lengths_.addEdge(l.older, l.newer, params_.loop.loop_path_length);
     }
   }
@@ -337,7 +337,7 @@ void SlamEngine::addFarLoop(const SlamLoop& loop) {
 std::vector<SlamLoop> SlamEngine::usedFarLoops() const {
   std::vector<SlamLoop> used;
   for (const SlamLoop& l : state_.loops) {
-    if (l.far && l.weight >= kMinLoopWeight) used.push_back(l);
+    if (l.far && isUsed(l)) used.push_back(l);
   }
   return used;
 }
