@@ -19,7 +19,7 @@
 #include "hyselam_common/parameter_documents.hpp"
 #include "hyselam_common/ros/params.hpp"
 #include "hyselam_objects/ros/object_engine_server.hpp"
-#include "hyselam_topo/ros/parameters.hpp"
+#include "hyselam_topo/ros/gr2to_parameters.hpp"
 #include "hyselam_topo/ros/topo_engine_parameters.hpp"
 #include "ngram_slam/ros/parameters.hpp"
 #include "ngram_slam/ros/shared_map_parameters.hpp"

@@ -89,7 +89,7 @@ std::pair<Point2, Point2> glassOf(const std::string& name) {
   throw InputError("plan", name, "there is none");
 }
 
-void expectAt(const hyselam_topo::GlassWall& wall, const std::string& name) {
+void expectAt(const hyselam_topo::WallLine& wall, const std::string& name) {
   const auto [a, b] = glassOf(name);
   const bool turned = wall.a.x > wall.b.x;
   const Point2 wa = turned ? wall.b : wall.a, wb = turned ? wall.a : wall.b;

@@ -9,9 +9,9 @@
 using hyselam::OccupancyGrid;
 using hyselam::Point2;
 using hyselam::Pose2;
-using hyselam_topo::GlassWall;
 using hyselam_topo::GlassWallSearch;
 using hyselam_topo::Side;
+using hyselam_topo::WallLine;
 
 namespace {
 
@@ -49,17 +49,17 @@ struct Corridor {
   }
   Pose2 at(double x, double y, double theta) const { return frame * Pose2{x, y, theta}; }
   /// In the corridor's own frame, from the lower x to the higher.
-  GlassWall own(const GlassWall& wall) const {
-    GlassWall w{frame.inverse() * wall.a, frame.inverse() * wall.b};
+  WallLine own(const WallLine& wall) const {
+    WallLine w{frame.inverse() * wall.a, frame.inverse() * wall.b};
     if (w.a.x > w.b.x) std::swap(w.a, w.b);
     return w;
   }
 };
 
-void expectAt(const std::optional<GlassWall>& found, const Corridor& c, double from, double to,
+void expectAt(const std::optional<WallLine>& found, const Corridor& c, double from, double to,
               double y) {
   ASSERT_TRUE(found);
-  const GlassWall w = c.own(*found);
+  const WallLine w = c.own(*found);
   EXPECT_NEAR(w.a.x, from, 0.2);
   EXPECT_NEAR(w.b.x, to, 0.2);
   EXPECT_NEAR(w.a.y, y, 0.2);
@@ -152,7 +152,7 @@ TEST(GlassWall, DrawnWallsBlockEveryPath) {
     OccupancyGrid copy = c.grid;
     const auto found = GlassWallSearch(c.grid, c.at(7.0, 0.0, 0.0), Side::kLeft).likeliest();
     ASSERT_TRUE(found);
-    hyselam_topo::drawGlassWalls({*found}, &copy);
+    hyselam_topo::drawWalls({*found}, &copy);
     // All cells that are reached from the corridor by 8 neighbours.
     const auto& g = copy.geometry;
     std::vector<hyselam::Cell> front{g.cellAt(c.frame * Point2{7.0, 0.0})};
@@ -173,14 +173,13 @@ TEST(GlassWall, DrawnWallsBlockEveryPath) {
   }
   // What lies outside is left out.
   Corridor c;
-  hyselam_topo::drawGlassWalls({{{-100.0, 0.0}, {1000.0, 0.0}}, {{1e30, 0.0}, {0.0, 0.0}}},
-                               &c.grid);
+  hyselam_topo::drawWalls({{{-100.0, 0.0}, {1000.0, 0.0}}, {{1e30, 0.0}, {0.0, 0.0}}}, &c.grid);
 }
 
 TEST(GlassWall, LimitsThePlacesOnItsSides) {
   auto map = two_rooms::map();
-  const GlassWall between{{4.05, 0.1}, {4.05, 0.9}};
-  hyselam_topo::addGlassWalls({between}, &map);
+  const WallLine between{{4.05, 0.1}, {4.05, 0.9}};
+  hyselam_topo::putWall({between, hyselam_topo::WallKind::kGlass}, &map);
   ASSERT_EQ(map.places[0].walls.size(), 1u);
   ASSERT_EQ(map.places[1].walls.size(), 1u);
   EXPECT_EQ(map.places[0].walls[0].kind, hyselam_topo::WallKind::kGlass);
@@ -188,6 +187,6 @@ TEST(GlassWall, LimitsThePlacesOnItsSides) {
   EXPECT_GT(map.places[1].walls[0].normal.x, 0.9);
   EXPECT_NO_THROW(hyselam_topo::checkMap(map, "map"));
   const auto once = map;
-  hyselam_topo::addGlassWalls({between}, &map);
+  hyselam_topo::putWall({between, hyselam_topo::WallKind::kGlass}, &map);
   EXPECT_TRUE(map == once);
 }

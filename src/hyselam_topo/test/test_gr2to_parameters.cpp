@@ -4,7 +4,7 @@
 #include "hyselam_common/testing/files.hpp"
 #include "hyselam_common/testing/temporary_directory.hpp"
 #include "hyselam_gr2to/segmentation/border_model.hpp"
-#include "hyselam_topo/ros/parameters.hpp"
+#include "hyselam_topo/ros/gr2to_parameters.hpp"
 
 namespace hyselam_topo {
 namespace {

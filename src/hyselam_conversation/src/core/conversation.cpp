@@ -284,7 +284,6 @@ Exchange Conversation::say(const std::string& text) {
   out.utterances = reply.utterances;
   if (reply.ends_other_question) fill_map_.dropQuestion();
   take(reply, Layer::kPlaces, out);
-  if (reply.ends_other_question) fill_map_.dropQuestion();
   for (const hyselam_topo::ForwardedSentence& sentence : reply.forwarded) {
     askObjects(sentence, out);
   }

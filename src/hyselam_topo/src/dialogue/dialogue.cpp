@@ -6,14 +6,9 @@
 
 #include "dialogue_turn.hpp"
 #include "hyselam_common/errors.hpp"
-#include "hyselam_language/building/article.hpp"
-#include "told_facts.hpp"
 
 namespace hyselam_topo {
 namespace {
-
-/// A robot that has not moved for so long stands [s].
-constexpr double kStands = 3.0;
 
 std::vector<Phrases> shippedPhrases() {
   std::vector<Phrases> all;
@@ -145,7 +140,7 @@ void Dialogue::forgetLost(const std::vector<Id>& lost, const KnownBefore& known)
   const std::vector<Id> asked = placesIn(question());
   if (std::any_of(asked.begin(), asked.end(), isLost)) talk_.questions.drop();
   dropStaleQuestion();
-  barChangesOf(lost, known);
+  talk_.changes.forgetPlaces(lost, known);
 }
 
 void Dialogue::setGrid(hyselam::OccupancyGrid grid) {
@@ -171,25 +166,6 @@ Reply Dialogue::setPose(double stamp, const hyselam::Pose2& pose) {
 Reply Dialogue::losePose(double stamp) {
   topo_state_.lost(stamp);
   return reply();
-}
-
-void Dialogue::setOut(Id to) {
-  talk_.under_way = to;
-  talk_.halted = false;
-  talk_.stood_at = robot().pose;
-  talk_.stands_since = robot().stamp;
-}
-
-void Dialogue::seeWhetherArrived() {
-  const hyselam::Pose2& pose = robot().pose;
-  const bool moved = std::hypot(pose.x - talk_.stood_at.x, pose.y - talk_.stood_at.y) > 0.05 ||
-                     std::abs(hyselam::normalizeAngle(pose.theta - talk_.stood_at.theta)) > 0.05;
-  if (moved || robot().stamp < talk_.stands_since) {
-    talk_.stood_at = pose;
-    talk_.stands_since = robot().stamp;
-  }
-  const bool there = talk_.under_way && *talk_.under_way != 0 && *talk_.under_way == robot().place;
-  if (there && robot().stamp - talk_.stands_since >= kStands) talk_.under_way.reset();
 }
 
 void Dialogue::enterPlace(Reply& out) {
@@ -227,6 +203,12 @@ void Dialogue::askAboutPlace(Id place, AskPolicy policy, Reply& out) {
 }
 
 // ---- Knowledge ----
+
+bool Dialogue::useLanguage(const std::string& language) {
+  if (phrases_.count(language) == 0) return false;
+  language_ = language;
+  return true;
+}
 
 std::string Dialogue::sayNobodyAnswers() const {
   return phrases().say("nobody_answers");
@@ -282,130 +264,6 @@ void Dialogue::restore(DialogueState state) {
   told_at_ = places_.map().findPlace(state.told_at) == nullptr ? 0 : state.told_at;
   talk_ = {};
   topo_state_.mapChanged(places_.map());
-}
-
-std::string Dialogue::label(Id id) const {
-  const Place& place = *places_.map().findPlace(id);
-  const std::string names = phrases().list(namesOf(place));
-  switch (nameStateOf(place)) {
-    case NameState::kNone:
-      return codeOf(place);
-    case NameState::kUnconfirmed:
-      return codeOf(place) + ", " + phrases().say("perhaps", {{"name", names}});
-    case NameState::kConfirmed:
-      break;
-  }
-  return codeOf(place) + ", " + names;
-}
-
-std::string Dialogue::shortName(Id id) const {
-  const Place& place = *places_.map().findPlace(id);
-  return place.words.empty() ? codeOf(place) : namesOf(place).front();
-}
-
-std::vector<std::string> Dialogue::labels(const std::vector<Id>& ids) const {
-  std::vector<std::string> all;
-  for (const Id id : ids) {
-    const Place& place = *places_.map().findPlace(id);
-    const std::string code = codeOf(place);
-    const NameState state = nameStateOf(place);
-    if (state == NameState::kNone) {
-      all.push_back(code);
-      continue;
-    }
-    std::string label = said(shortName(id));
-    if (state == NameState::kUnconfirmed) label = phrases().say("perhaps", {{"name", label}});
-    all.push_back(label.append(" (").append(code).append(")"));
-  }
-  return all;
-}
-
-std::string Dialogue::said(const std::string& name) const {
-  return knowsLanguage(language_) ? withArticle(name, grammar()) : name;
-}
-
-std::string Dialogue::subject(const std::string& name) const {
-  bool plural = false;
-  const std::string text = knowsLanguage(language_) ? withArticle(name, grammar(), &plural) : name;
-  return text == name || plural ? name : capital(text);
-}
-
-std::vector<std::string> Dialogue::said(std::vector<std::string> names) const {
-  for (std::string& name : names) name = said(name);
-  return names;
-}
-
-bool Dialogue::areOfOtherNames(const std::string& name, const std::vector<Id>& places) const {
-  if (places.size() < 2) return false;
-  const NameKey said = names_.key(name);
-  std::set<std::string> others;
-  for (const Id id : places) {
-    for (const std::string& each : namesOf(*places_.map().findPlace(id))) {
-      const NameKey key = names_.key(each);
-      if (key.full == said.full) return false;
-      if (!key.kind.empty() && key.kind == said.kind) others.insert(key.full);
-    }
-  }
-  return others.size() > 1;
-}
-
-bool Dialogue::tellOnlyTold(const std::string& name, Reply& out) {
-  const std::vector<Id> told = builder_.find(name);
-  if (told.empty()) return false;
-  out.sentences.push_back(phrases().say("told_only", {{"name", said(name)}}));
-  std::string facts;
-  for (const std::string& fact : factsOf(builder_.building(), told.front(), grammar())) {
-    facts += (facts.empty() ? "" : " ") + fact;
-  }
-  if (!facts.empty()) out.sentences.push_back(phrases().say("told", {{"text", facts}}));
-  if (places_.hasMap() && !isOfOtherFloor(name)) {
-    askWhere(out);
-    wonder({builder_.building().findPlace(told.front())->name});
-  }
-  return true;
-}
-
-std::vector<Id> Dialogue::resolve(const SaidName& name, Reply& out) {
-  std::vector<Id> found;
-  if (name.reference == "here") {
-    if (robot().place != 0) found.push_back(robot().place);
-    if (found.empty()) out.sentences.push_back(phrases().say("no_place_here"));
-  } else if (name.reference == "it") {
-    if (talk_.subject != 0 && places_.map().findPlace(talk_.subject) != nullptr)
-      found.push_back(talk_.subject);
-    if (found.empty()) {
-      out.sentences.push_back(phrases().say("unknown_place", {{"name", "'" + name.text + "'"}}));
-      out.unknown_name = true;
-    }
-  } else {
-    found = places_.find(name.text);
-    // "The garage", which was told to be another name of the workshop.
-    for (const std::string& other : withTold({name.text})) {
-      if (found.empty()) found = places_.find(other);
-    }
-    if (found.empty() && tellOnlyTold(name.text, out)) return {};
-    if (areOfOtherNames(name.text, found)) {
-      out.sentences.push_back(
-          phrases().say("which_place", {{"places", phrases().list(labels(found))}}));
-      return {};
-    }
-    if (found.empty()) {
-      out.sentences.push_back(phrases().say("unknown_place", {{"name", name.text}}));
-      out.unknown_name = true;
-    }
-  }
-  if (!found.empty()) talk_.subject = found.front();
-  return found;
-}
-
-std::vector<Id> Dialogue::resolve(const Utterance& u, const std::string& slot, Reply& out) {
-  const std::vector<SaidName> names = u.names(slot);
-  if (names.empty()) {
-    SaidName here;
-    here.reference = "here";
-    return resolve(here, out);
-  }
-  return resolve(names.front(), out);
 }
 
 }  // namespace hyselam_topo

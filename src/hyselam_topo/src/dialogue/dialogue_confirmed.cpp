@@ -6,23 +6,16 @@
 
 #include "dialogue_turn.hpp"
 #include "hyselam_topo/dialogue/dialogue.hpp"
-#include "hyselam_topo/topomerg/shared_walls.hpp"
+#include "neighbors.hpp"
+#include "plane.hpp"
 
 namespace hyselam_topo {
 namespace {
 
-double distanceTo(hyselam::Point2 p, hyselam::Point2 a, hyselam::Point2 b) {
-  const double dx = b.x - a.x, dy = b.y - a.y;
-  const double length2 = dx * dx + dy * dy;
-  const double along = length2 > 0.0 ? ((p.x - a.x) * dx + (p.y - a.y) * dy) / length2 : 0.0;
-  const double t = std::min(1.0, std::max(0.0, along));
-  return std::hypot(p.x - a.x - t * dx, p.y - a.y - t * dy);
-}
-
 double distanceTo(hyselam::Point2 p, const std::vector<hyselam::Point2>& outline) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < outline.size(); ++i) {
-    least = std::min(least, distanceTo(p, outline[i], outline[(i + 1) % outline.size()]));
+    least = std::min(least, distanceToSegment(p, outline[i], outline[(i + 1) % outline.size()]));
   }
   return least;
 }
@@ -38,22 +31,6 @@ std::optional<double> gapBetween(const Place& a, const Place& b) {
 
 bool has(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-bool areNeighbors(const AugmentedTopologicalMap& map, Id a, Id b) {
-  if (map.findEdge(a, b) != nullptr) return true;
-  const std::vector<SharedWall> walls = sharedWalls(map);
-  return std::any_of(walls.begin(), walls.end(), [&](const SharedWall& wall) {
-    const Id one = map.places[wall.a].id, other = map.places[wall.b].id;
-    return (one == a && other == b) || (one == b && other == a);
-  });
-}
-
-/// From both of them a door leads to the same place.
-bool areOfOnePlace(const AugmentedTopologicalMap& map, Id a, Id b) {
-  return std::any_of(map.places.begin(), map.places.end(), [&](const Place& place) {
-    return map.findEdge(a, place.id) != nullptr && map.findEdge(b, place.id) != nullptr;
-  });
 }
 
 }  // namespace
@@ -122,7 +99,7 @@ std::optional<std::string> Dialogue::deniedByMap(const DescribedBuilding& before
     if (at_a.size() != 1 || at_b.size() != 1 || at_a == at_b) continue;
     const Place &place_a = *map.findPlace(at_a.front()), &place_b = *map.findPlace(at_b.front());
     if (areNeighbors(map, place_a.id, place_b.id)) continue;
-    if (!beside && areOfOnePlace(map, place_a.id, place_b.id)) continue;
+    if (!beside && haveCommonNeighbor(map, place_a.id, place_b.id)) continue;
     const std::optional<double> gap = gapBetween(place_a, place_b);
     // Neither has the other beside it where a room of their size has its place between them.
     if (!gap || *gap <= std::sqrt(std::max(place_a.area, place_b.area))) continue;
@@ -155,7 +132,7 @@ bool Dialogue::askPose(const Utterance& u, Turn& turn) {
   question.place = found.front();
   question.names = {name};
   question.sentence = turn.text.substr(u.range.begin);
-  question.alternatives = {turn.text.substr(std::min(u.range.end, turn.text.size()))};
+  question.rest = turn.text.substr(std::min(u.range.end, turn.text.size()));
   ask(std::move(question),
       phrases().say("ask_pose", {{"names", said(name)},
                                  {"code", code},
@@ -181,10 +158,8 @@ void Dialogue::startFrom(const Question& asked, Turn& turn) {
   topo_state_.update(places_.map(), stamp, pose->pose);
   talk_.asked = talk_.subject = asked.place;
   tellRobotPlace(asked.place, namesOf(*places_.map().findPlace(asked.place)));
-  const std::string& rest = asked.alternatives.front();
-  if (rest.find_first_not_of(" .,;!?\n\t") != std::string::npos) {
-    turn.again = rest.substr(rest.find_first_not_of(" .,;!?\n\t"));
-  }
+  const std::size_t more = asked.rest.find_first_not_of(" .,;!?\n\t");
+  if (more != std::string::npos) turn.again = asked.rest.substr(more);
 }
 
 }  // namespace hyselam_topo

@@ -132,7 +132,7 @@ Reply Dialogue::forget(Id place) {
   matchDescription(out, false);
   if (question().isAboutName() && question().place == place) talk_.questions.drop();
   dropStaleQuestion();
-  out.sentences.push_back(phrases().say("forgot_names", {{"places", label(place)}}));
+  out.sentences.push_back(phrases().say("forgot_names", {{"places", codeAndNames(place)}}));
   out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
   return out;
 }

@@ -17,32 +17,39 @@ struct Dialogue::Turn {
   std::size_t end = 0;    ///< of the utterance before, in the text
   std::size_t until = 0;  ///< where the next one begins
   Reply reply;
-  std::vector<std::string> not_understood;  ///< answers to what was not understood
-  std::vector<std::string> left_out;        ///< words without matter beside statements
-  bool described = false;                   ///< statements about the building were recorded
-  bool beyond_here = false;                 ///< ... about more than where the robot is
-  bool sides = false;                       ///< ... with sides
-  std::vector<std::string> here;            ///< ... where the robot is; empty: not described
+  std::string again;        ///< a sentence of before that is heard now
+  bool broken_off = false;  ///< what follows waits for the answer to a question
+
+  // Statements that are not recorded yet (recordStatements())
+  bool described = false;         ///< there are some
+  bool beyond_here = false;       ///< ... about more than where the robot is
+  bool sides = false;             ///< ... with sides
+  std::vector<std::string> here;  ///< ... where the robot is; empty: not described
   std::vector<DescriptionIssue> issues;
-  std::vector<NamedGoal> goals;  ///< where to go, in order
-  bool told = false;             ///< of other places than the one where the robot is
-  std::size_t used = 0;          ///< utterances that the open question has taken as its answer
-  bool answered = false;         ///< an answer was given, or met
-  bool about_else = false;       ///< something was said that is no answer
-  bool says_more = false;        ///< something was said that is understood and no answer
-  bool forwarded_last = false;   ///< others hear the utterance before
-  std::string took_back;         ///< the utterance before, where it was an "undo that"
-  bool lost = false;             ///< something was said that was not understood
-  bool broken_off = false;       ///< what follows waits for the answer to a question
-  std::vector<std::string> proposals;      ///< what may have been meant, best first, ...
-  std::string to_confirm;                  ///< ... statements understood but for some words, ...
-  std::string refusal_of_proposal;         ///< ... and what is said where it cannot be asked
-  std::string again;                       ///< a sentence of before that is heard now
   std::optional<DescriptionIssue> to_ask;  ///< what the person can answer
   bool asks_speaker = false;               ///< ... by telling who speaks
-  /// The description before the statements of this turn.
+  /// The description before them.
   std::optional<DescribedBuilding> before;
   KnownBefore known_before;  ///< with `before`
+
+  std::vector<NamedGoal> goals;  ///< where to go, in order
+
+  // Answers, and what the text was about
+  std::size_t used = 0;         ///< utterances that the open question has taken as its answer
+  bool answered = false;        ///< an answer was given, or met
+  bool about_else = false;      ///< something was said that is no answer
+  bool says_more = false;       ///< something was said that is understood and no answer
+  bool told = false;            ///< of other places than the one where the robot is
+  bool lost = false;            ///< something was said that was not understood
+  bool forwarded_last = false;  ///< others hear the utterance before
+  std::string took_back;        ///< the utterance before, where it was an "undo that"
+
+  // What was not understood
+  std::vector<std::string> not_understood;  ///< answers to it
+  std::vector<std::string> left_out;        ///< words without matter beside statements
+  std::vector<std::string> proposals;       ///< what may have been meant, best first, ...
+  std::string to_confirm;                   ///< ... statements understood but for some words, ...
+  std::string refusal_of_proposal;          ///< ... and what is said where it cannot be asked
 };
 
 /// What people say of names is one change, which "undo that" takes back as a whole.

@@ -1,4 +1,4 @@
-// What is known before and after each change of it, and the way back.
+// "Undo that": how what is known becomes what it was before a change.
 #include <algorithm>
 #include <utility>
 
@@ -8,31 +8,8 @@
 namespace hyselam_topo {
 namespace {
 
-/// So many changes can be taken back.
-constexpr std::size_t kLongest = 16;
-
-std::vector<std::string> confirmedOf(const std::vector<PlaceTerm>& words) {
-  std::vector<std::string> names;
-  for (const PlaceTerm& word : words) {
-    if (word.confirmed) names.push_back(word.text);
-  }
-  return names;
-}
-
 bool has(const std::vector<Id>& all, Id id) {
   return std::find(all.begin(), all.end(), id) != all.end();
-}
-
-/// What people have said of the names of these places.
-PlaceMan::Names namesOf(const std::vector<Id>& places, const PlaceMan::Names& names) {
-  PlaceMan::Names some;
-  for (const auto& each : names.words) {
-    if (has(places, each.first)) some.words.insert(each);
-  }
-  for (const auto& each : names.rejected) {
-    if (has(places, each.first)) some.rejected.push_back(each);
-  }
-  return some;
 }
 
 std::vector<Id> virtualPlacesOf(const AugmentedTopologicalMap& map) {
@@ -43,19 +20,9 @@ std::vector<Id> virtualPlacesOf(const AugmentedTopologicalMap& map) {
   return all;
 }
 
-/// Guesses follow from what is known.
-bool sameNames(const PlaceMan::Names& a, const PlaceMan::Names& b) {
-  return a.rejected == b.rejected && a.words.size() == b.words.size() &&
-         std::equal(a.words.begin(), a.words.end(), b.words.begin(), b.words.end(),
-                    [](const auto& one, const auto& other) {
-                      return one.first == other.first &&
-                             confirmedOf(one.second) == confirmedOf(other.second);
-                    });
-}
-
 }  // namespace
 
-Dialogue::KnownBefore Dialogue::knownNow() const {
+KnownBefore Dialogue::knownNow() const {
   KnownBefore now;
   now.names = places_.names();
   now.walls = places_.walls();
@@ -66,7 +33,7 @@ Dialogue::KnownBefore Dialogue::knownNow() const {
 }
 
 bool Dialogue::isChanged(const KnownBefore& since) const {
-  return !sameNames(since.names, places_.names()) || !(since.walls == places_.walls()) ||
+  return !haveSameNames(since.names, places_.names()) || !(since.walls == places_.walls()) ||
          since.virtual_places != virtualPlacesOf(places_.map());
 }
 
@@ -97,56 +64,15 @@ Dialogue::Change::~Change() {
 void Dialogue::remember(KnownBefore before) {
   talk_.things_since = false;
   before.after = builder_.statementCount();
-  talk_.changes.push_back(std::move(before));
-  if (talk_.changes.size() > kLongest) bar(1, KnownBefore::Barrier::kTooLongAgo);
-}
-
-void Dialogue::bar(std::size_t change, KnownBefore::Barrier why) {
-  auto& all = talk_.changes;
-  KnownBefore barrier;
-  barrier.barrier = why;
-  barrier.statements = barrier.after = all[change].after;
-  all.erase(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(change) + 1);
-  all.insert(all.begin(), std::move(barrier));
-}
-
-void Dialogue::barChangesOf(const std::vector<Id>& lost, const KnownBefore& known) {
-  if (lost.empty()) return;
-  auto& all = talk_.changes;
-  for (std::size_t i = all.size(); i-- > 0 && all[i].barrier == KnownBefore::Barrier::kNone;) {
-    const KnownBefore& next = i + 1 < all.size() ? all[i + 1] : known;
-    const auto had = [&](const KnownBefore& each, Id id) { return has(each.virtual_places, id); };
-    const bool is_of_lost = !sameNames(namesOf(lost, all[i].names), namesOf(lost, next.names)) ||
-                            std::any_of(lost.begin(), lost.end(),
-                                        [&](Id id) { return had(all[i], id) != had(next, id); });
-    if (!is_of_lost) continue;
-    bar(i, KnownBefore::Barrier::kPlaceGone);
-    break;
-  }
-  // Another map may have other places under their ids.
-  for (KnownBefore& each : all) {
-    for (const Id id : lost) each.names.words.erase(id);
-    auto& rejected = each.names.rejected;
-    rejected.erase(std::remove_if(rejected.begin(), rejected.end(),
-                                  [&](const auto& pair) { return has(lost, pair.first); }),
-                   rejected.end());
-    auto& virtuals = each.virtual_places;
-    virtuals.erase(
-        std::remove_if(virtuals.begin(), virtuals.end(), [&](Id id) { return has(lost, id); }),
-        virtuals.end());
-    if (has(lost, each.told_at)) each.told_at = 0;
-  }
+  talk_.changes.add(std::move(before));
 }
 
 std::string Dialogue::lastChange() const {
   if (!barrierToUndo().empty()) return "";
-  const KnownBefore* last = talk_.changes.empty() ? nullptr : &talk_.changes.back();
   const Utterance* said = builder_.lastStatement();
   const std::string statement = said != nullptr ? said->text : "";
-  const std::size_t statements = builder_.statementCount();
-  if (last == nullptr || statements > (last->told ? last->after : last->statements)) {
-    return statement;
-  }
+  if (talk_.changes.isStatementLast(builder_.statementCount())) return statement;
+  const KnownBefore* last = talk_.changes.last();
   std::vector<std::string> changed;
   const auto namesAt = [](const PlaceMan::Names& names, Id id) {
     const auto found = names.words.find(id);
@@ -186,13 +112,15 @@ std::string Dialogue::nextUndo() const {
 }
 
 std::string Dialogue::barrierToUndo() const {
-  if (talk_.changes.empty()) return "";
-  const KnownBefore& last = talk_.changes.back();
-  if (last.barrier == KnownBefore::Barrier::kNone || builder_.statementCount() > last.after) {
-    return "";
+  switch (talk_.changes.barrier(builder_.statementCount())) {
+    case KnownBefore::Barrier::kPlaceGone:
+      return "cannot_take_back_gone";
+    case KnownBefore::Barrier::kTooLongAgo:
+      return "cannot_take_back";
+    case KnownBefore::Barrier::kNone:
+      break;
   }
-  return last.barrier == KnownBefore::Barrier::kPlaceGone ? "cannot_take_back_gone"
-                                                          : "cannot_take_back";
+  return "";
 }
 
 void Dialogue::restoreKnown(const KnownBefore& before, Reply& out) {
@@ -268,7 +196,7 @@ bool Dialogue::takeBack(Turn& turn) {
   const bool told_last = asked == Question::Kind::kAlsoName || asked == Question::Kind::kNewName;
   const std::string barrier = barrierToUndo();
   const bool nothing =
-      !barrier.empty() || (talk_.changes.empty() && builder_.statementCount() == 0);
+      !barrier.empty() || (talk_.changes.last() == nullptr && builder_.statementCount() == 0);
   if (told_last || (nothing && question().isAboutName())) {
     talk_.questions.drop();
     say("cancelled", turn);
@@ -287,13 +215,12 @@ bool Dialogue::takeBack(Turn& turn) {
     say(barrier.c_str(), turn);
     return true;
   }
-  KnownBefore* last = talk_.changes.empty() ? nullptr : &talk_.changes.back();
+  KnownBefore* last = talk_.changes.last();
   const PlaceMan::Names since = places_.names();
-  const std::size_t statements = builder_.statementCount();
-  if (last != nullptr && statements <= (last->told ? last->after : last->statements)) {
+  if (!talk_.changes.isStatementLast(builder_.statementCount())) {
     if (last->told) builder_.restore(std::move(*last->told));
     restoreKnown(*last, out);
-    talk_.changes.pop_back();
+    talk_.changes.dropLast();
   } else {
     const Utterance* said = builder_.lastStatement();
     if (said == nullptr) return false;
@@ -303,7 +230,7 @@ bool Dialogue::takeBack(Turn& turn) {
     if (last != nullptr && last->barrier == KnownBefore::Barrier::kNone && !last->told &&
         builder_.statementCount() <= last->statements) {
       restoreKnown(*last, out);
-      talk_.changes.pop_back();
+      talk_.changes.dropLast();
     }
   }
   talk_.questions.drop();

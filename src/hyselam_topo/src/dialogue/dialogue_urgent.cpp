@@ -16,12 +16,6 @@ bool isMotion(const Utterance& u) {
 
 }  // namespace
 
-void Dialogue::halt(Reply& out) {
-  talk_.halted = talk_.halted || (talk_.under_way && !talk_.way.empty());
-  talk_.under_way.reset();
-  out.actions.push_back({DialogueAction::Kind::kStop, {}, 0.0});
-}
-
 Reply Dialogue::obey(const UrgentWords& urgent) {
   const auto& languages = urgent.languages;
   const bool spoken = std::find(languages.begin(), languages.end(), language_) != languages.end();

@@ -2,13 +2,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
 #include "dialogue_turn.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_topo/dialogue/dialogue.hpp"
-#include "hyselam_topological_map/map_geometry.hpp"
-#include "plane.hpp"
+#include "hyselam_topo/side_angle.hpp"
+#include "way_obstacles.hpp"
 
 namespace hyselam_topo {
 namespace {
@@ -63,7 +62,7 @@ void Dialogue::addWall(const Utterance& u, Turn& turn) {
   askWall(found, std::move(question), out);
 }
 
-void Dialogue::askWall(const std::optional<GlassWall>& found, Question question, Reply& out) {
+void Dialogue::askWall(const std::optional<WallLine>& found, Question question, Reply& out) {
   const Phrases& p = phrases();
   const GlassWallSearch& search = *question.search;
   const std::string& kind = p.wall(question.wall.kind);
@@ -85,42 +84,44 @@ void Dialogue::askWall(const std::optional<GlassWall>& found, Question question,
 
 void Dialogue::forgetWall(const Utterance& u, Turn& turn) {
   Reply& out = turn.reply;
-  const Phrases& p = phrases();
   const auto& walls = places_.walls();
-  std::size_t chosen = walls.empty() ? 0 : walls.size() - 1;
-  bool found = !walls.empty();
+  std::optional<std::size_t> chosen;
   const auto side = sideOf(u.word("side"));
-  if (found && side && *side != Side::kUnknown) {
-    found = false;
-    double least = std::numeric_limits<double>::infinity();
-    const double direction = *side == Side::kLeft    ? 0.5 * hyselam::kPi
-                             : *side == Side::kRight ? -0.5 * hyselam::kPi
-                             : *side == Side::kBack  ? hyselam::kPi
-                                                     : 0.0;
-    for (std::size_t i = 0; robot().has_pose && i < walls.size(); ++i) {
-      const GlassWall& line = walls[i].line;
-      const hyselam::Point2 middle{0.5 * (line.a.x + line.b.x), 0.5 * (line.a.y + line.b.y)};
-      const hyselam::Point2 seen = robot().pose.inverse() * middle;
-      const double off = hyselam::normalizeAngle(std::atan2(seen.y, seen.x) - direction);
-      const double d = std::hypot(seen.x, seen.y);
-      if (std::abs(off) > 0.5 * params_.glass.aperture || d > params_.glass.range || d >= least) {
-        continue;
-      }
-      least = d;
-      chosen = i;
-      found = true;
-    }
+  if (side && *side != Side::kUnknown) {
+    chosen = wallOnSide(*side);
+  } else if (!walls.empty()) {
+    chosen = walls.size() - 1;  // the last one that was told
   }
-  if (!found) {
-    out.sentences.push_back(p.say("no_wall"));
+  if (!chosen) {
+    out.sentences.push_back(phrases().say("no_wall"));
     return;
   }
   const Change change(this);
-  const DescribedWall gone = walls[chosen];
-  places_.removeWall(chosen);
+  const DescribedWall gone = walls[*chosen];
+  places_.removeWall(*chosen);
   out.sentences.push_back(sayWall(gone, false));
   out.actions.push_back({DialogueAction::Kind::kWalls, {}, 0.0});
   out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
+}
+
+std::optional<std::size_t> Dialogue::wallOnSide(Side side) const {
+  if (!robot().has_pose) return std::nullopt;
+  std::optional<std::size_t> nearest;
+  double least = std::numeric_limits<double>::infinity();
+  const auto& walls = places_.walls();
+  for (std::size_t i = 0; i < walls.size(); ++i) {
+    const WallLine& line = walls[i].line;
+    const hyselam::Point2 middle{0.5 * (line.a.x + line.b.x), 0.5 * (line.a.y + line.b.y)};
+    const hyselam::Point2 seen = robot().pose.inverse() * middle;
+    const double off = hyselam::normalizeAngle(std::atan2(seen.y, seen.x) - angleOf(side));
+    const double d = std::hypot(seen.x, seen.y);
+    if (std::abs(off) > 0.5 * params_.glass.aperture || d > params_.glass.range || d >= least) {
+      continue;
+    }
+    least = d;
+    nearest = i;
+  }
+  return nearest;
 }
 
 void Dialogue::addVirtualPlace(const Utterance& u, Turn& turn) {
@@ -179,12 +180,6 @@ std::string Dialogue::sayWall(const DescribedWall& wall, bool is_there) const {
   return p.say(is_there ? "wall_added" : "wall_forgotten", {{"wall", p.wall(wall.kind)}});
 }
 
-void Dialogue::haltAtDoor(const DescribedWall& wall, Reply& out) {
-  if (!talk_.under_way || places_.doorShutBy(wall) == nullptr) return;
-  halt(out);
-  out.sentences.push_back(phrases().say("stopped"));
-}
-
 Reply Dialogue::addWall(const DescribedWall& wall) {
   Reply out = reply();
   const Change change(this);
@@ -207,27 +202,6 @@ Reply Dialogue::removeWall(const DescribedWall& wall) {
   out.actions.push_back({DialogueAction::Kind::kWalls, {}, 0.0});
   out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
   return out;
-}
-
-std::optional<RouteLeg> Dialogue::route(const hyselam::Pose2& from,
-                                        const std::vector<Id>& goals) const {
-  return planRoute(places_.map(), from, goals, params_.route, places_.shutDoors());
-}
-
-std::pair<Id, Id> Dialogue::sidesOf(const DescribedWall& wall) const {
-  const GlassWall& line = wall.line;
-  const double length = line.length();
-  const hyselam::Point2 across{(line.a.y - line.b.y) / length, (line.b.x - line.a.x) / length};
-  const auto beside = [&](double sign) -> Id {
-    // Beyond the wall itself, and what is drawn of it.
-    for (const double far : {0.3, 0.5, 0.8}) {
-      const auto at = placeAt(places_.map(), {0.5 * (line.a.x + line.b.x) + sign * far * across.x,
-                                              0.5 * (line.a.y + line.b.y) + sign * far * across.y});
-      if (at) return at->place;
-    }
-    return 0;
-  };
-  return {beside(1.0), beside(-1.0)};
 }
 
 void Dialogue::openDoor(const DescribedWall& wall, Reply& out) {
@@ -328,77 +302,23 @@ void Dialogue::openDoor(const Utterance& u, Turn& turn) {
 
 void Dialogue::tellWallInTheWay(const hyselam::Pose2& from, const std::vector<Id>& goals,
                                 const std::vector<NamedGoal>& goals_then, Reply& out) {
-  const auto start = placeAt(places_.map(), {from.x, from.y}, 0.5);
-  if (!start) return;
-  const std::vector<Id> shut = places_.shutDoors();
-  const auto isShut = [&](const Door& door) {
-    return std::find(shut.begin(), shut.end(), door.id) != shut.end();
-  };
-  struct Step {
-    Id a, b;
-    const DescribedWall* wall;  // in the way; nullptr: none
-  };
-  std::vector<Step> steps;
-  for (const Edge& edge : places_.map().edges) {
-    if (edge.doors.empty() || !std::all_of(edge.doors.begin(), edge.doors.end(), isShut)) {
-      steps.push_back({edge.a, edge.b, nullptr});
-    }
-  }
-  // Shut doors first: of those in the way a person can open them again.
-  for (const bool door : {true, false}) {
-    for (const DescribedWall& wall : places_.walls()) {
-      const auto [a, b] = sidesOf(wall);
-      const bool is_door = places_.doorShutBy(wall) != nullptr;
-      if (a != 0 && b != 0 && a != b && is_door == door) steps.push_back({a, b, &wall});
-    }
-  }
-  // By as few walls as possible: how many, and the first of them.
-  std::map<Id, std::pair<std::size_t, const Step*>> reached{{start->place, {0, nullptr}}};
-  for (bool again = true; again;) {
-    again = false;
-    for (const Step& step : steps) {
-      for (const bool turned : {false, true}) {
-        const auto before = reached.find(turned ? step.b : step.a);
-        if (before == reached.end()) continue;
-        auto next = before->second;
-        if (step.wall != nullptr && next.first++ == 0) next.second = &step;
-        const auto [after, is_new] = reached.emplace(turned ? step.a : step.b, next);
-        if (!is_new && after->second.first <= next.first) continue;
-        after->second = next;
-        again = true;
-      }
-    }
-  }
-  const Step* first = nullptr;
-  std::size_t least = std::numeric_limits<std::size_t>::max();
-  for (const Id goal : goals) {
-    const auto found = reached.find(goal);
-    if (found == reached.end() || found->second.first >= least) continue;
-    least = found->second.first;
-    first = found->second.second;
-  }
-  if (first == nullptr) return;
+  const auto found = wallInTheWay(places_, from, goals);
+  if (!found) return;
   const Phrases& p = phrases();
-  const bool is_door = places_.doorShutBy(*first->wall) != nullptr;
+  const bool is_door = places_.doorShutBy(found->wall) != nullptr;
   const std::string sentence =
       p.say(is_door ? "shut_in_the_way" : "wall_in_the_way",
-            {{"wall", p.wall(first->wall->kind)},
-             {"places", p.list({said(shortName(first->a)), said(shortName(first->b))})}});
+            {{"wall", p.wall(found->wall.kind)},
+             {"places", p.list({said(shortName(found->a)), said(shortName(found->b))})}});
   if (!is_door) {
     out.sentences.push_back(sentence);
     return;
   }
   Question question;
   question.kind = Question::Kind::kOpenDoor;
-  question.wall = *first->wall;
+  question.wall = found->wall;
   question.goals = goals_then;
   ask(std::move(question), sentence + " " + p.say("ask_open"), out);
-}
-
-bool Dialogue::useLanguage(const std::string& language) {
-  if (phrases_.count(language) == 0) return false;
-  language_ = language;
-  return true;
 }
 
 }  // namespace hyselam_topo

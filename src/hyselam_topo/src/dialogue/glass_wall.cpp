@@ -6,7 +6,7 @@
 #include <cstdlib>
 
 #include "hyselam_common/errors.hpp"
-#include "hyselam_topological_map/map_geometry.hpp"
+#include "hyselam_topo/side_angle.hpp"
 #include "plane.hpp"
 
 namespace hyselam_topo {
@@ -16,24 +16,8 @@ using hyselam::Cell;
 using hyselam::OccupancyGrid;
 using hyselam::Point2;
 
-/// Two glass walls are the same if their ends are within this [m].
-constexpr double kSame = 0.3;
-
-double directionOf(Side side) {
-  switch (side) {
-    case Side::kFront:
-      return 0.0;
-    case Side::kLeft:
-      return 0.5 * hyselam::kPi;
-    case Side::kBack:
-      return hyselam::kPi;
-    case Side::kRight:
-      return -0.5 * hyselam::kPi;
-    case Side::kUnknown:
-      break;
-  }
-  throw hyselam::InputError("glass wall", "side", "it is not told");
-}
+/// A wall that was rejected fits better only by more than this [m].
+constexpr double kMuchBetter = 0.3;
 
 /// A grid map with occupied cells, in coordinates of cells.
 struct Walls {
@@ -148,29 +132,11 @@ void GlassWallParams::validate() const {
     throw hyselam::ParameterError("max_length", max_length, "> min_length");
 }
 
-double GlassWall::length() const {
-  return distanceBetween(a, b);
-}
-
-double GlassWall::distanceTo(Point2 point) const {
-  return distanceToSegment(point, a, b);
-}
-
-bool sameWall(const GlassWall& a, const GlassWall& b) {
-  const double straight = std::max(distanceBetween(a.a, b.a), distanceBetween(a.b, b.b));
-  const double crossed = std::max(distanceBetween(a.a, b.b), distanceBetween(a.b, b.a));
-  return std::min(straight, crossed) <= kSame;
-}
-
-bool operator==(const GlassWall& a, const GlassWall& b) {
-  return a.a.x == b.a.x && a.a.y == b.a.y && a.b.x == b.b.x && a.b.y == b.b.y;
-}
-
 GlassWallSearch::GlassWallSearch(const OccupancyGrid& grid, const hyselam::Pose2& robot, Side side,
                                  const GlassWallParams& params)
     : robot_(robot), side_(side), params_(params) {
   params.validate();
-  const double direction = directionOf(side);
+  if (side == Side::kUnknown) throw hyselam::InputError("glass wall", "side", "it is not told");
   const auto& g = grid.geometry;
   if (!robot.isFinite()) throw hyselam::InputError("glass wall", "pose", "it is not finite");
   const hyselam::Pose2 in_grid = g.origin.inverse() * robot;
@@ -182,7 +148,7 @@ GlassWallSearch::GlassWallSearch(const OccupancyGrid& grid, const hyselam::Pose2
   const double range = params.range / g.resolution;
   // At its far end two neighbouring beams are a cell apart.
   const int beams = 1 + static_cast<int>(std::ceil(params.aperture * range));
-  const double first = in_grid.theta + direction - 0.5 * params.aperture;
+  const double first = in_grid.theta + angleOf(side) - 0.5 * params.aperture;
   std::vector<Corner> found;
   for (int i = 0; i < beams; ++i) {
     const double angle = first + params.aperture * i / (beams - 1);
@@ -220,96 +186,44 @@ void GlassWallSearch::joinCorners(const std::function<bool(std::size_t, std::siz
     std::stable_sort(partners.begin(), partners.end(),
                      [&](std::size_t a, std::size_t b) { return distanceTo(a) < distanceTo(b); });
     for (const std::size_t j : partners) {
-      const GlassWall wall{corners_[i], corners_[j]};
-      const bool known = std::any_of(pairs_.begin(), pairs_.end(), [&](const GlassWall& o) {
-        return o == GlassWall{wall.b, wall.a};
+      const WallLine wall{corners_[i], corners_[j]};
+      const bool known = std::any_of(pairs_.begin(), pairs_.end(), [&](const WallLine& o) {
+        return o == WallLine{wall.b, wall.a};
       });
       if (!known) pairs_.push_back(wall);
     }
   }
 }
 
-bool GlassWallSearch::rejected(const GlassWall& wall) const {
+bool GlassWallSearch::rejected(const WallLine& wall) const {
   return std::any_of(rejected_.begin(), rejected_.end(),
-                     [&](const GlassWall& other) { return sameWall(wall, other); });
+                     [&](const WallLine& other) { return sameWall(wall, other); });
 }
 
-std::optional<GlassWall> GlassWallSearch::likeliest() const {
-  for (const GlassWall& wall : pairs_) {
+std::optional<WallLine> GlassWallSearch::likeliest() const {
+  for (const WallLine& wall : pairs_) {
     if (!rejected(wall)) return wall;
   }
   return std::nullopt;
 }
 
-std::optional<GlassWall> GlassWallSearch::ofLength(double length) const {
-  const auto error = [&](const GlassWall& wall) { return std::abs(wall.length() - length); };
-  const GlassWall* best = nullptr;  // of those that were not rejected
-  const GlassWall* of_all = nullptr;
-  for (const GlassWall& wall : pairs_) {
+std::optional<WallLine> GlassWallSearch::ofLength(double length) const {
+  const auto error = [&](const WallLine& wall) { return std::abs(wall.length() - length); };
+  const WallLine* best = nullptr;  // of those that were not rejected
+  const WallLine* of_all = nullptr;
+  for (const WallLine& wall : pairs_) {
     if (of_all == nullptr || error(wall) < error(*of_all) - 1e-9) of_all = &wall;
     if (rejected(wall)) continue;
     if (best == nullptr || error(wall) < error(*best) - 1e-9) best = &wall;
   }
   if (of_all == nullptr) return std::nullopt;
   // A person may say no by mistake: a rejected wall that fits much better is asked about again.
-  if (best == nullptr || error(*of_all) + kSame < error(*best)) best = of_all;
+  if (best == nullptr || error(*of_all) + kMuchBetter < error(*best)) best = of_all;
   return *best;
 }
 
-void GlassWallSearch::reject(const GlassWall& wall) {
+void GlassWallSearch::reject(const WallLine& wall) {
   rejected_.push_back(wall);
-}
-
-void drawGlassWalls(const std::vector<GlassWall>& walls, OccupancyGrid* grid) {
-  const auto& g = grid->geometry;
-  const auto draw = [&](int x, int y) {
-    if (g.contains({x, y})) grid->at({x, y}) = OccupancyGrid::kOccupied;
-  };
-  for (const GlassWall& wall : walls) {
-    const Point2 a = g.origin.inverse() * wall.a, b = g.origin.inverse() * wall.b;
-    const double length = wall.length() / g.resolution;
-    if (!std::isfinite(length) || length > 1e6) continue;
-    const int steps = std::max(1, static_cast<int>(std::ceil(4.0 * length)));
-    std::optional<Cell> last;
-    for (int i = 0; i <= steps; ++i) {
-      const double t = static_cast<double>(i) / steps;
-      const double fx = (a.x + t * (b.x - a.x)) / g.resolution;
-      const double fy = (a.y + t * (b.y - a.y)) / g.resolution;
-      if (!(std::abs(fx) < 1e9 && std::abs(fy) < 1e9)) continue;
-      const Cell c{static_cast<int>(std::floor(fx)), static_cast<int>(std::floor(fy))};
-      draw(c.x, c.y);
-      // Across a corner of a cell a way of 8 neighbours would slip through.
-      if (last && last->x != c.x && last->y != c.y) draw(last->x, c.y);
-      last = c;
-    }
-  }
-}
-
-void addGlassWalls(const std::vector<GlassWall>& walls, AugmentedTopologicalMap* map,
-                   WallKind kind) {
-  for (const GlassWall& glass : walls) {
-    if (!(glass.length() > 0.0)) continue;
-    std::vector<Id> done;
-    for (const bool turned : {false, true}) {
-      const Point2 a = turned ? glass.b : glass.a, b = turned ? glass.a : glass.b;
-      Wall wall = straightWall(a, b);
-      wall.kind = kind;
-      constexpr double kBeside = 0.3;  // beyond posts and drawn cells [m]
-      const Point2 beside{wall.position.x + kBeside * wall.normal.x,
-                          wall.position.y + kBeside * wall.normal.y};
-      const auto at = placeAt(*map, beside, kBeside);
-      if (!at || std::find(done.begin(), done.end(), at->place) != done.end()) continue;
-      done.push_back(at->place);
-      Place* place = map->findPlace(at->place);
-      const bool known = std::any_of(place->walls.begin(), place->walls.end(), [&](const Wall& w) {
-        const auto line = polyline(w);
-        return w.kind == kind && sameWall({line.front(), line.back()}, glass);
-      });
-      if (known) continue;
-      wall.id = map->next_wall_id++;
-      place->walls.push_back(wall);
-    }
-  }
 }
 
 }  // namespace hyselam_topo

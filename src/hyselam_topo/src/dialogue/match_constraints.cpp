@@ -41,28 +41,4 @@ MatchConstraints constraintsOf(const PlaceMan& places, const DescriptionBuilder&
   return constraints;
 }
 
-int nameAt(const MatchSolution& solution, std::size_t vertex) {
-  return solution.assignment[vertex];
-}
-
-EqualAnswers equalAnswers(const PlaceAssignment& match) {
-  EqualAnswers answers;
-  const MatchSolution& best = match.best();
-  const std::size_t known = std::min(match.equal, match.solutions.size());
-  std::set<int> unsure;
-  for (std::size_t s = 0; s < known; ++s) {
-    const MatchSolution& other = match.solutions[s];
-    if (other.vertices != best.vertices) continue;
-    ++answers.count;
-    for (std::size_t v = 0; v < best.assignment.size(); ++v) {
-      const int here = nameAt(best, v), there = nameAt(other, v);
-      if (here == there) continue;
-      if (here >= 0) unsure.insert(here);
-      if (there >= 0) unsure.insert(there);
-    }
-  }
-  answers.unsure.assign(unsure.begin(), unsure.end());
-  return answers;
-}
-
 }  // namespace hyselam_topo

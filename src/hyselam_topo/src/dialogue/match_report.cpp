@@ -4,10 +4,37 @@
 #include <iterator>
 
 #include "hyselam_topo/topomerg/topomerg_names.hpp"
-#include "match_constraints.hpp"
 
 namespace hyselam_topo {
 namespace {
+
+/// Answers that are as good as the best one.
+struct EqualAnswers {
+  std::size_t count = 0;    ///< with the best one
+  std::vector<int> unsure;  ///< names that they put in different places
+};
+
+/// Answers that only give a name more places say less than the one with the fewest, which is taken:
+/// they do not count.
+EqualAnswers equalAnswers(const PlaceAssignment& match) {
+  EqualAnswers answers;
+  const MatchSolution& best = match.best();
+  const std::size_t known = std::min(match.equal, match.solutions.size());
+  std::set<int> unsure;
+  for (std::size_t s = 0; s < known; ++s) {
+    const MatchSolution& other = match.solutions[s];
+    if (other.vertices != best.vertices) continue;
+    ++answers.count;
+    for (std::size_t v = 0; v < best.assignment.size(); ++v) {
+      const int here = nameAt(best, v), there = nameAt(other, v);
+      if (here == there) continue;
+      if (here >= 0) unsure.insert(here);
+      if (there >= 0) unsure.insert(there);
+    }
+  }
+  answers.unsure.assign(unsure.begin(), unsure.end());
+  return answers;
+}
 
 /// The places of the map that the kept answers give a name to, without repetition.
 std::vector<Id> placesOf(int name, const PlaceAssignment& match, const MatchProblem& problem) {
@@ -44,6 +71,10 @@ std::vector<PlaceSet> verticesOf(const GuessedPlaces& guessed, const MatchProble
 }
 
 }  // namespace
+
+int nameAt(const MatchSolution& solution, std::size_t vertex) {
+  return solution.assignment[vertex];
+}
 
 GuessedPlaces guessedPlaces(const PlaceMan& places, const DescribedBuilding& building) {
   GuessedPlaces guessed;

@@ -1,6 +1,7 @@
 // What a new match of the description with the map changes, and what of it is not sure.
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <set>
 #include <string>
@@ -13,6 +14,9 @@
 #include "hyselam_topo/topomerg/topomerg.hpp"
 
 namespace hyselam_topo {
+
+/// The name that an answer of TopoMerg gives a vertex: its number in the problem, -1 for none.
+int nameAt(const MatchSolution& solution, std::size_t vertex);
 
 /// The places where each name of a description is guessed; names that are confirmed are left out.
 using GuessedPlaces = std::map<std::string, std::set<Id>>;

@@ -71,8 +71,12 @@ std::vector<std::string> namesOf(const Place& place) {
   return names;
 }
 
-bool operator==(const DescribedWall& a, const DescribedWall& b) {
-  return a.line == b.line && a.kind == b.kind;
+std::vector<std::string> confirmedOf(const std::vector<PlaceTerm>& words) {
+  std::vector<std::string> names;
+  for (const PlaceTerm& word : words) {
+    if (word.confirmed) names.push_back(word.text);
+  }
+  return names;
 }
 
 PlaceMan::PlaceMan(PlaceNames names) : names_(std::move(names)) {}
@@ -389,7 +393,7 @@ void PlaceMan::drawVirtualPlaces() {
 }
 
 void PlaceMan::putWalls() {
-  for (const DescribedWall& wall : state_.walls) addGlassWalls({wall.line}, &state_.map, wall.kind);
+  for (const DescribedWall& wall : state_.walls) putWall(wall, &state_.map);
 }
 
 void PlaceMan::addWall(const DescribedWall& wall) {
@@ -428,7 +432,7 @@ bool PlaceMan::removeWall(const DescribedWall& wall) {
 
 const Door* PlaceMan::doorShutBy(const DescribedWall& wall) const {
   if (wall.kind != WallKind::kVirtual) return nullptr;
-  const GlassWall& line = wall.line;
+  const WallLine& line = wall.line;
   const double length = line.length();
   const Point2 middle{0.5 * (line.a.x + line.b.x), 0.5 * (line.a.y + line.b.y)};
   for (const Edge& edge : state_.map.edges) {
@@ -461,11 +465,11 @@ std::vector<Id> PlaceMan::shutDoors() const {
 
 hyselam::OccupancyGrid PlaceMan::withWalls(const hyselam::OccupancyGrid& grid) const {
   hyselam::OccupancyGrid copy = grid;
-  std::vector<GlassWall> lines;
+  std::vector<WallLine> lines;
   for (const DescribedWall& wall : state_.walls) {
     if (doorShutBy(wall) == nullptr) lines.push_back(wall.line);
   }
-  drawGlassWalls(lines, &copy);
+  drawWalls(lines, &copy);
   return copy;
 }
 

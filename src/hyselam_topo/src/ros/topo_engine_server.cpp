@@ -5,14 +5,10 @@
 #include <nav_msgs/Path.h>
 #include <std_msgs/Bool.h>
 
-#include <cstdio>
-#include <filesystem>
-
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/ros/conversions.hpp"
 #include "hyselam_common/ros/server_setup.hpp"
 #include "hyselam_common/ros/transport.hpp"
-#include "hyselam_topo/dialogue/dialogue_state.hpp"
 #include "hyselam_topo/ros/dialogue_markers.hpp"
 #include "hyselam_topological_map/ros/conversions.hpp"
 

@@ -9,6 +9,7 @@
 
 #include "angles.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_topo/side_angle.hpp"
 #include "hyselam_topo/topomerg/shared_walls.hpp"
 #include "hyselam_topological_map/map_geometry.hpp"
 #include "map_gaps.hpp"
@@ -19,29 +20,7 @@ namespace {
 using hyselam::InputError;
 
 double areaOf(const Place& place) {
-  if (place.area > 0.0) return place.area;
-  double twice = 0.0;
-  for (std::size_t k = 0; k < place.outline.size(); ++k) {
-    const auto& p = place.outline[k];
-    const auto& q = place.outline[(k + 1) % place.outline.size()];
-    twice += p.x * q.y - q.x * p.y;
-  }
-  return 0.5 * std::abs(twice);
-}
-
-double angleOf(Side side) {
-  switch (side) {
-    case Side::kLeft:
-      return 0.5 * hyselam::kPi;
-    case Side::kRight:
-      return -0.5 * hyselam::kPi;
-    case Side::kBack:
-      return hyselam::kPi;
-    case Side::kFront:
-    case Side::kUnknown:
-      break;
-  }
-  return 0.0;
+  return place.area > 0.0 ? place.area : std::abs(signedArea(place.outline));
 }
 
 class Numbers {

@@ -13,16 +13,18 @@
 #include <utility>
 #include <vector>
 
-#include "hyselam_common/parameters.hpp"
 #include "hyselam_language/building/description_builder.hpp"
 #include "hyselam_language/grammar/topo_parser.hpp"
 #include "hyselam_language/grammar/urgent_words.hpp"
 #include "hyselam_topo/dialogue/ask_place.hpp"
-#include "hyselam_topo/dialogue/glass_wall.hpp"
+#include "hyselam_topo/dialogue/change_history.hpp"
+#include "hyselam_topo/dialogue/dialogue_params.hpp"
+#include "hyselam_topo/dialogue/dialogue_state.hpp"
 #include "hyselam_topo/dialogue/phrases.hpp"
 #include "hyselam_topo/dialogue/place_man.hpp"
 #include "hyselam_topo/dialogue/place_pose.hpp"
 #include "hyselam_topo/dialogue/question_keeper.hpp"
+#include "hyselam_topo/dialogue/reply.hpp"
 #include "hyselam_topo/dialogue/route.hpp"
 #include "hyselam_topo/dialogue/topo_state.hpp"
 #include "hyselam_topo/dialogue/uncertainty.hpp"
@@ -31,117 +33,6 @@
 namespace hyselam_topo {
 
 struct SaidAnswer;
-
-struct DialogueParams {
-  /// Language of the robot's first sentences; then it answers in the language of the person.
-  std::string language = "en";
-  /// When the robot asks unprompted, on entering a place.
-  AskPolicy ask = AskPolicy::kUnconfirmed;
-  /// After a description the robot asks for the name that best discriminates between near-equal
-  /// assignments, also about other places than its own, by their generated id (e.g. SS03).
-  bool ask_from_afar = false;
-  /// Search (TopoMerg) for the places of the map that described names belong to.
-  SolverParams match = defaultMatch();
-  GlassWallParams glass;  ///< search in the grid map for a glass wall that a person describes
-  RouteParams route;      ///< of the paths to places
-  TopoStateParams state;  ///< of TopoState, which tracks the robot's place; not of DialogueState
-
-  /// Defaults of SolverParams, but with a time limit of 2 s, and solutions whose fitness is within
-  /// 0.03 of the best are kept.
-  static SolverParams defaultMatch();
-
-  void describe(hyselam::ParameterVisitor& visit);
-  /// @throws hyselam::ParameterError for a parameter out of range.
-  void validate() const;
-};
-
-struct DialogueAction {
-  enum class Kind {
-    kMap,     ///< the names or places of map() have changed
-    kWalls,   ///< the described walls have changed, and so has gridWithWalls()
-    kGo,      ///< drive `legs`, one after another
-    kStop,    ///< stop driving
-    kFollow,  ///< follow the person
-    kTurn,    ///< turn by `angle`
-    kPose     ///< a person says that the robot is at `pose`: its localisation starts from there
-  };
-  Kind kind = Kind::kMap;
-  std::vector<RouteLeg> legs;
-  double angle = 0.0;  ///< [rad], left > 0
-  std::optional<PlacePose> pose = std::nullopt;
-};
-
-/// A sentence for another node, which handles other topics (objects).
-struct ForwardedSentence {
-  std::string text;
-  /// Reply if no other node understands it either; empty: the dialogue understands the sentence and
-  /// processes it then, by hear() without forwarding.
-  std::string refusal;
-  /// Refused because it is about an object: another node can give the reason.
-  bool about_object = false;
-  /// The dialogue understands the sentence, but cannot do it or does not know the place: its
-  /// refusal is the one to give.
-  bool understood = false;
-  std::string reason;      ///< of the refusal, without the sentence around it
-  std::string suggestion;  ///< as Refusal::suggestion
-  /// The suggestion is what may have been meant: Dialogue::refuse() asks for it, and after a "no"
-  /// for the alternatives.
-  bool suggests_meaning = false;
-  std::vector<std::string> alternatives;
-  std::string rest;  ///< the refusals of parts that the suggestion is not about
-};
-
-/// A statement, or part of one, that is not understood or contradicts what is known.
-struct Refusal {
-  std::string text;        ///< what was said
-  std::string reason;      ///< for people
-  bool by_other = false;   ///< the reason is that of the node that handles objects
-  std::string suggestion;  ///< a sentence that would be understood; "": none
-};
-
-struct Reply {
-  std::string language;
-  std::vector<std::string> sentences;
-  std::vector<DialogueAction> actions;
-  std::vector<ForwardedSentence> forwarded;
-  std::vector<Refusal> refusals;      ///< what was not taken down; `sentences` tells it
-  std::vector<Utterance> utterances;  ///< what was heard
-  bool unknown_name = false;          ///< unknown place name in the last command
-  /// Stop or cancel was said: what other nodes have begun or asked is over, too.
-  bool stopped = false;
-  /// A question that another node has asked is over: something else was said.
-  bool ends_other_question = false;
-
-  std::string text() const;  ///< the sentences, separated by spaces
-  bool has(DialogueAction::Kind kind) const;
-  /// What `next` says and does comes after what this does, in its language.
-  void append(Reply next);
-};
-
-struct HearOptions {
-  /// Another node also handles sentences: those that are not understood, or name an unknown place,
-  /// are returned in Reply::forwarded instead of being refused.
-  bool forward_unknown = false;
-  /// The last topic was an object: "it is in room X" refers to it, and "A is in room X" is about an
-  /// object if A is not a known place.
-  bool objects_spoken_of = false;
-  /// Another node asked the last question: answers are forwarded to it.
-  bool others_asked_last = false;
-};
-
-/// State of a dialogue; a plain value, for files (dialogue_state.hpp).
-struct DialogueState {
-  std::string language;
-  PlaceMan::State places;  ///< of the place manager
-  DescribedBuilding description;
-  /// Heading of the robot when sides (left, front, ...) were last described, map frame [rad].
-  std::optional<double> heading;
-  /// Where the robot stood then, map frame [m].
-  std::optional<hyselam::Point2> position;
-  /// The place of the map where the robot was when it was last told, or found, where it is; 0: not
-  /// known.
-  Id told_at = 0;
-};
 
 class Dialogue {
  public:
@@ -219,7 +110,8 @@ class Dialogue {
   /// Of the names whose place is not sure, where they may be; of those that are nowhere yet, the
   /// places without a name.
   std::map<std::string, std::vector<Id>> whereMayBe() const;
-  /// The grid map with all described walls in it; nothing without a grid map.
+  /// The grid map with the described walls in it (PlaceMan::withWalls()); nothing without a grid
+  /// map.
   std::optional<hyselam::OccupancyGrid> gridWithWalls() const;
   /// All place names, confirmed, guessed or only described, sorted.
   std::vector<std::string> knownNames() const;
@@ -234,49 +126,34 @@ class Dialogue {
   void restore(DialogueState state);
 
  private:
-  struct Turn;         // one text of a person: reply, goals and statements while it is handled
-  struct KnownBefore;  // what "undo that" goes back to
+  struct Turn;  // one text of a person: reply, goals and statements while it is handled
   using Handler = void (Dialogue::*)(const Utterance&, Turn&);
+  class Change;  // of what is known, while it is made
 
+  // Each section is a source file. Handlers of intents take what was said and the text that it is
+  // part of (handlerOf()).
+
+  // ---- What the robot perceives, its knowledge (dialogue.cpp) ----
   const Phrases& phrases() const;
+  void enterPlace(Reply& reply);
+  void askAboutPlace(Id place, AskPolicy policy, Reply& reply);
+  /// What was asked or told right before of places that a new map does not have is over.
+  void forgetLost(const std::vector<Id>& lost, const KnownBefore& known);
+
+  // ---- One text, utterance by utterance (dialogue_hear.cpp) ----
   /// As what may answer the open question, if need be; nothing is changed.
   ParsedText parsed(const std::string& text) const;
   /// The same; the talk goes on in its language.
   ParsedText parse(const std::string& text);
-  /// As planRoute(), through no shut door.
-  std::optional<RouteLeg> route(const hyselam::Pose2& from, const std::vector<Id>& goals) const;
-  /// Why there is no way, where one would lead through a shut door or a described wall. Of a door
-  /// that is treated as shut it asks whether that is open again; then it drives to `goals_then`.
-  void tellWallInTheWay(const hyselam::Pose2& from, const std::vector<Id>& goals,
-                        const std::vector<NamedGoal>& goals_then, Reply& reply);
-  /// The places on both sides of a described wall, 0 where there is none.
-  std::pair<Id, Id> sidesOf(const DescribedWall& wall) const;
-  /// That it is there now, or no more; of one that shuts a door, what becomes of the door.
-  std::string sayWall(const DescribedWall& wall, bool is_there) const;
   /// Whether the parser has a grammar of it.
   bool knowsLanguage(const std::string& language) const;
   /// What remains after stop and cancel.
   Reply understand(const std::string& text, const HearOptions& options);
   /// What all texts end with: statements are recorded, goals set out for, questions asked.
   void finish(Turn& turn);
-  void tellLeftOut(Turn& turn);
   /// "Forget Narnia", where a place is called so: without an article it may be anything else. One
   /// letter away from such a name is asked about. False if nothing known is to be forgotten.
   bool forgetsKnown(const Utterance& u, Turn& turn);
-  void refuse(const Utterance& u, Turn& turn);
-  /// Nothing of it was understood, and it is in another language.
-  bool refuseOtherLanguage(const ParsedText& parsed, const std::string& language_before,
-                           Turn& turn);
-  /// Asks whether something was meant that was not understood.
-  void propose(Turn& turn);
-  /// The first of the proposals; the others after a "no". At least one.
-  void askProposal(const std::vector<std::string>& proposals, Reply& reply);
-  /// Stop or cancel was said.
-  Reply obey(const UrgentWords& urgent);
-  void heedRest(const UrgentRest& rest, Turn& turn);
-  void refuseRest(const UrgentRest& rest, Turn& turn);
-  /// Puts the open question again, or drops it if the text was about something else.
-  void settleQuestion(Turn& turn);
   void handleUtterance(const Utterance& u, Turn& turn);
   /// Passes a "no" with more behind it on; `behind_forwarded`: so was what stands before it.
   bool correctsObject(const Utterance& u, bool behind_forwarded, Turn& turn);
@@ -288,9 +165,6 @@ class Dialogue {
   /// The member function for an intent of the grammar; nullptr for one that is not handled.
   static Handler handlerOf(const Utterance& u);
   void forward(const Utterance& u, const std::string& refusal, Turn& turn);
-  /// Calls act(); a hyselam::InputError becomes a sentence of the reply.
-  template <typename Act>
-  void attempt(Reply& reply, Act&& act);
   void say(const char* key, Turn& turn);
   /// Whether the statement is "A is in room X" and A is "it" or not a known place.
   bool isAboutObject(const Utterance& u) const;
@@ -298,8 +172,71 @@ class Dialogue {
   bool isOfThisPlace(const Utterance& u, const Turn& turn) const;
   /// Whether "that is X" is of a place that was spoken of right before in the same text.
   bool pointsBack(const Utterance& u, const Turn& turn) const;
+  /// "SS05 is the library", also the other way round, in `named`: as if said there.
+  bool isOfNumberedPlace(const Utterance& u, Utterance* named) const;
+  /// "Forget the kitchen", which is a name of the map that nobody has told anything of.
+  bool isOnlyOnMap(const Utterance& u) const;
+  void help(const Utterance& u, Turn& turn);
+  void greet(const Utterance& u, Turn& turn);
+  void acceptThanks(const Utterance& u, Turn& turn);
+  /// Calls act(); a hyselam::InputError becomes a sentence of the reply.
+  template <typename Act>
+  void attempt(Reply& reply, Act&& act);
 
-  // descriptions
+  // ---- Stop and cancel (dialogue_urgent.cpp) ----
+  /// Stop or cancel was said.
+  Reply obey(const UrgentWords& urgent);
+  void heedRest(const UrgentRest& rest, Turn& turn);
+  void refuseRest(const UrgentRest& rest, Turn& turn);
+
+  // ---- What is not understood, and what may have been meant (dialogue_refusals.cpp) ----
+  void tellLeftOut(Turn& turn);
+  void refuse(const Utterance& u, Turn& turn);
+  /// Nothing of it was understood, and it is in another language.
+  bool refuseOtherLanguage(const ParsedText& parsed, const std::string& language_before,
+                           Turn& turn);
+  /// Asks whether something was meant that was not understood.
+  void propose(Turn& turn);
+  /// Whether a sentence that is proposed would be taken as it stands.
+  bool isAcceptable(const std::string& sentence) const;
+  std::vector<std::string> acceptableOf(std::vector<std::string> proposals) const;
+  /// A sentence as it can be said, of names that are known here.
+  std::string withKnownNames(const std::string& advice, const std::string& said_text) const;
+  /// One cause and one advice; `advice`: "" for that of the reason.
+  std::string sayNotUnderstood(const std::string& text, const std::string& reason,
+                               const std::string& advice) const;
+
+  // ---- From names to places and back (dialogue_reference.cpp) ----
+  /// Of the language of the talk.
+  const Grammar& grammar() const;
+  /// The places of the description that a name, "here" or "it" means.
+  std::vector<Id> described(const SaidName& name) const;
+  /// The places of the map where a name is confirmed.
+  std::vector<Id> confirmedPlaces(const std::string& name) const;
+  /// The places of the map with a name of the same kind: all toilets.
+  std::vector<Id> placesOfKind(const std::string& name) const;
+  /// Whether a name of another language may mean several names: "casa de banho" the toilet and the
+  /// bathroom.
+  bool areOfOtherNames(const std::string& name, const std::vector<Id>& places) const;
+  /// What was told of a place that is not on the map, and how to tell where it is; false if nothing
+  /// was told.
+  bool tellOnlyTold(const std::string& name, Reply& reply);
+  /// The places that a name, "here" or "it" refers to; adds the reason to `reply` if none.
+  std::vector<Id> resolve(const SaidName& name, Reply& reply);
+  std::vector<Id> resolve(const Utterance& u, const std::string& slot, Reply& reply);
+  /// For lists, the code first: "CC04, corridor"; "SS02, perhaps kitchen"; "SS03".
+  std::string codeAndNames(Id place) const;
+  /// Name, else code, without an article: "corridor"; "kitchen"; "SS03".
+  std::string shortName(Id place) const;
+  /// For sentences, the name first: "the corridor (CC04)", "perhaps the kitchen (SS02)", "SS03".
+  std::vector<std::string> labels(const std::vector<Id>& places) const;
+  /// A name with its article in the language of the talk: "the kitchen", but "room 5".
+  std::string said(const std::string& name) const;
+  std::vector<std::string> said(std::vector<std::string> names) const;
+  /// As said(), where a sentence begins that speaks of one: "The kitchen", but "stairs".
+  std::string subject(const std::string& name) const;
+
+  // ---- Statements about the building, matched with the map (dialogue_descriptions.cpp) ----
   /// Sides are told from where the robot is, also where it has been driven since that was told.
   /// `also_unnamed`: also where nobody has named the place, then under the map's own name.
   void followRobot(bool also_unnamed);
@@ -326,10 +263,18 @@ class Dialogue {
   /// Where the names are that have come to a likely place since people were told.
   void tellLikely(const std::vector<MovedName>& moved, Reply& reply);
 
-  // names
+  // ---- What people say against what they have confirmed (dialogue_confirmed.cpp) ----
   /// What was told since `before` of the names of places that have confirmed ones holds for the
   /// map, too: "the library is also called Atlantis".
   void nameAsTold(const DescribedBuilding& before);
+  /// Why two places cannot lie as told since `before`: both are confirmed, and far apart.
+  std::optional<std::string> deniedByMap(const DescribedBuilding& before) const;
+  /// "You are in the canteen", which is known elsewhere: asks whether the robot is lost. False
+  /// where it may be there.
+  bool askPose(const Utterance& u, Turn& turn);
+  void startFrom(const Question& asked, Turn& turn);
+
+  // ---- Names, told one by one (dialogue_naming.cpp) ----
   void nameThisPlace(const Utterance& u, Turn& turn);
   void namePlace(Id place, const Utterance& u, Turn& turn);
   /// "SS05 is not the library", and what it is instead, if that is said.
@@ -340,15 +285,6 @@ class Dialogue {
   std::vector<std::string> withTold(const std::vector<std::string>& names) const;
   /// ... but for those that another place has.
   std::vector<std::string> ownNames(Id place, const std::vector<std::string>& names) const;
-  /// "SS05 is the library", also the other way round, in `named`: as if said there.
-  bool isOfNumberedPlace(const Utterance& u, Utterance* named) const;
-  /// "Forget the kitchen", which is a name of the map that nobody has told anything of.
-  bool isOnlyOnMap(const Utterance& u) const;
-  /// "Undo that": of the question for a name that was told last, else of the last change of what
-  /// is known; false if there is none.
-  bool takeBack(Turn& turn);
-  /// Which names have changed since, as sentences.
-  void tellNamesAgain(const PlaceMan::Names& since, Reply& reply) const;
   /// Names of a place that are no more are gone from what was told, too, but not what was told of
   /// the place.
   bool forgetNamesOf(Id place);
@@ -368,41 +304,7 @@ class Dialogue {
   void confirmNames(Id place, const std::vector<std::string>& names, Reply& reply,
                     bool instead = false);
 
-  // questions of the robot, and their answers
-  void enterPlace(Reply& reply);
-  void askAboutPlace(Id place, AskPolicy policy, Reply& reply);
-  void askConfirm(Id place, Reply& reply);
-  /// The open question is over if what it is about is gone.
-  void dropStaleQuestion();
-  void askName(Id place, Reply& reply);
-  /// Asks whether a place with other names has these as well.
-  void askAlso(Id place, const std::vector<std::string>& names, Reply& out);
-  /// For the name of a place where the robot may not be, by its generated id.
-  void askFromAfar(Id place, Reply& reply);
-  void askMostInformativeQuestion(const MatchProblem& problem, Reply& reply);
-  /// Asks whether a place may be called so; `sentence`: Question::sentence.
-  void askNewName(Id place, const std::vector<std::string>& names, const std::string& sentence,
-                  Reply& reply);
-  /// What was asked or told right before of places that a new map does not have is over.
-  void forgetLost(const std::vector<Id>& lost, const KnownBefore& known);
-  /// Tells which names are elsewhere now; `asks`: whether that is right.
-  void tellMoved(std::vector<MovedName> moved, bool asks, Reply& reply);
-  void ask(Question question, const std::string& sentence, Reply& reply);
-  void rejectGuess(const Question& asked, Reply& reply);
-  /// Takes the answer to the open question from the begin of a text.
-  void takeAnswer(const ParsedText& text, Turn& turn);
-  void heedFirstWord(const std::string& text, SaidAnswer* said) const;
-  void answer(const SaidAnswer& said, Turn& turn);
-  void answerName(const SaidAnswer& said, const Question& asked, Reply& reply);
-  void answerLength(double length, const Question& asked, Reply& reply);
-  void answerYes(const Question& asked, Turn& turn);
-  void answerNo(const Question& asked, Reply& reply);
-  /// Yes, no or a number where nothing is asked.
-  void meetAnswer(const Utterance& u, Turn& turn);
-  /// Whether a name sounds like one of a place, or is known as one.
-  bool isPlaceName(const SaidName& name) const;
-
-  // where names belong that have no sure place
+  // ---- Where names belong that have no sure place (dialogue_wondering.cpp) ----
   /// From now on until something else is spoken of, "it is SS03", "in place 3" tells where the
   /// first of these names belongs that is not said.
   void wonder(std::vector<std::string> names);
@@ -417,26 +319,71 @@ class Dialogue {
   /// How to tell where a name belongs that has no place on the map.
   void askWhere(Reply& reply);
 
-  // what people say against what they have confirmed
-  /// Why two places cannot lie as told since `before`: both are confirmed, and far apart.
-  std::optional<std::string> deniedByMap(const DescribedBuilding& before) const;
-  /// "You are in the canteen", which is known elsewhere: asks whether the robot is lost. False
-  /// where it may be there.
-  bool askPose(const Utterance& u, Turn& turn);
-  void startFrom(const Question& asked, Turn& turn);
-  /// Whether a sentence that is proposed would be taken as it stands.
-  bool isAcceptable(const std::string& sentence) const;
-  std::vector<std::string> acceptableOf(std::vector<std::string> proposals) const;
-  /// A sentence as it can be said, of names that are known here.
-  std::string withKnownNames(const std::string& advice, const std::string& said_text) const;
-  /// One cause and one advice; `advice`: "" for that of the reason.
-  std::string sayNotUnderstood(const std::string& text, const std::string& reason,
-                               const std::string& advice) const;
+  // ---- "Undo that" (dialogue_undo.cpp) ----
+  /// "Undo that": of the question for a name that was told last, else of the last change of what
+  /// is known; false if there is none.
+  bool takeBack(Turn& turn);
+  /// Which names have changed since, as sentences.
+  void tellNamesAgain(const PlaceMan::Names& since, Reply& reply) const;
+  KnownBefore knownNow() const;
+  void remember(KnownBefore before);
+  /// Whether names, walls or virtual places are others now.
+  bool isChanged(const KnownBefore& since) const;
+  /// Why "undo that" can take nothing back, as a phrase; "" where it can.
+  std::string barrierToUndo() const;
+  /// As nextUndo(), whether things were spoken of since or not.
+  std::string lastChange() const;
+  /// The map as it was before, without what statements have told.
+  void restoreKnown(const KnownBefore& before, Reply& reply);
 
-  // walls and virtual places
+  // ---- Questions of the robot ... (dialogue_robot_asks.cpp) ----
+  /// The first of the proposals; the others after a "no". At least one.
+  void askProposal(const std::vector<std::string>& proposals, Reply& reply);
+  /// Puts the open question again, or drops it if the text was about something else.
+  void settleQuestion(Turn& turn);
+  void askConfirm(Id place, Reply& reply);
+  /// The open question is over if what it is about is gone.
+  void dropStaleQuestion();
+  void askName(Id place, Reply& reply);
+  /// Asks whether a place with other names has these as well.
+  void askAlso(Id place, const std::vector<std::string>& names, Reply& out);
+  /// For the name of a place where the robot may not be, by its generated id.
+  void askFromAfar(Id place, Reply& reply);
+  void askMostInformativeQuestion(const MatchProblem& problem, Reply& reply);
+  /// Asks whether a place may be called so; `sentence`: Question::sentence.
+  void askNewName(Id place, const std::vector<std::string>& names, const std::string& sentence,
+                  Reply& reply);
+  /// Tells which names are elsewhere now; `asks`: whether that is right.
+  void tellMoved(std::vector<MovedName> moved, bool asks, Reply& reply);
+  void ask(Question question, const std::string& sentence, Reply& reply);
+
+  // ---- ... and what is answered to them (dialogue_person_answers.cpp) ----
+  void rejectGuess(const Question& asked, Reply& reply);
+  /// Takes the answer to the open question from the begin of a text.
+  void takeAnswer(const ParsedText& text, Turn& turn);
+  void heedFirstWord(const std::string& text, SaidAnswer* said) const;
+  void answer(const SaidAnswer& said, Turn& turn);
+  void answerName(const SaidAnswer& said, const Question& asked, Reply& reply);
+  void answerLength(double length, const Question& asked, Reply& reply);
+  void answerYes(const Question& asked, Turn& turn);
+  void answerNo(const Question& asked, Reply& reply);
+  /// Yes, no or a number where nothing is asked.
+  void meetAnswer(const Utterance& u, Turn& turn);
+  /// Whether a name sounds like one of a place, or is known as one.
+  bool isPlaceName(const SaidName& name) const;
+
+  // ---- Described walls, shut doors, virtual places (dialogue_walls.cpp) ----
+  /// Why there is no way, where one would lead through a shut door or a described wall. Of a door
+  /// that is treated as shut it asks whether that is open again; then it drives to `goals_then`.
+  void tellWallInTheWay(const hyselam::Pose2& from, const std::vector<Id>& goals,
+                        const std::vector<NamedGoal>& goals_then, Reply& reply);
+  /// That it is there now, or no more; of one that shuts a door, what becomes of the door.
+  std::string sayWall(const DescribedWall& wall, bool is_there) const;
   void addWall(const Utterance& u, Turn& turn);
-  void askWall(const std::optional<GlassWall>& found, Question question, Reply& reply);
+  void askWall(const std::optional<WallLine>& found, Question question, Reply& reply);
   void forgetWall(const Utterance& u, Turn& turn);
+  /// The number in PlaceMan::walls() of the nearest wall on a side of the robot.
+  std::optional<std::size_t> wallOnSide(Side side) const;
   /// The places of each name that tells which door is meant; nothing if one is not known.
   std::optional<std::vector<std::vector<Id>>> sidesOfDoor(const Utterance& u, Reply& reply);
   /// A door that people tell to be closed is shut by a virtual wall.
@@ -448,7 +395,9 @@ class Dialogue {
   void addVirtualAndAsk(hyselam::Point2 centre, double radius,
                         const std::vector<std::string>& names, Reply& reply);
 
-  // navigation
+  // ---- Driving (dialogue_driving.cpp) ----
+  /// As planRoute(), through no shut door.
+  std::optional<RouteLeg> route(const hyselam::Pose2& from, const std::vector<Id>& goals) const;
   void goTo(const Utterance& u, Turn& turn);
   void goToPreviousPlace(const Utterance& u, Turn& turn);
   void followPerson(const Utterance& u, Turn& turn);
@@ -463,13 +412,18 @@ class Dialogue {
   void drive(const std::vector<NamedGoal>& goals, Reply& reply);
   /// No more motion.
   void halt(Reply& reply);
+  /// It is under way from now on, to that place or, for 0, behind a person; how long it has stood
+  /// before is no sign that it has arrived.
+  void setOut(Id to);
+  /// A robot that stands in the place it was sent to is not under way any more.
+  void seeWhetherArrived();
+  /// A robot that drives stops when a door is shut, which may be on its way.
+  void haltAtDoor(const DescribedWall& wall, Reply& out);
+  void refuseCorridor(const Utterance& u, Turn& turn);
+  void refuseComing(const Utterance& u, Turn& turn);
+  void refuseCarrying(const Utterance& u, Turn& turn);
 
-  // small talk
-  void help(const Utterance& u, Turn& turn);
-  void greet(const Utterance& u, Turn& turn);
-  void acceptThanks(const Utterance& u, Turn& turn);
-
-  // questions of people
+  // ---- Answers to questions about the building: from the map ... (dialogue_answers.cpp) ----
   void answerWhereAreYou(const Utterance& u, Turn& turn);
   void answerWhereIs(const Utterance& u, Turn& turn);
   void answerRouteTo(const Utterance& u, Turn& turn);
@@ -478,6 +432,8 @@ class Dialogue {
   void answerOnSide(const Utterance& u, Turn& turn);
   void answerSize(const Utterance& u, Turn& turn);
   void answerWhichPlaces(const Utterance& u, Turn& turn);
+
+  // ---- ... and from what was told, then from the map (dialogue_told_answers.cpp) ----
   void answerTold(const Utterance& u, Turn& turn);
   void answerWhatIsKnown(const Utterance& u, Turn& turn);
   void answerOwner(const Utterance& u, Turn& turn);
@@ -492,38 +448,6 @@ class Dialogue {
   void answerLargest(const Utterance& u, Turn& turn);
   void answerWhoAmI(const Utterance& u, Turn& turn);
   void sayTruth(const std::optional<bool>& truth, const std::string& reason, Reply& reply);
-  void refuseCorridor(const Utterance& u, Turn& turn);
-  void refuseComing(const Utterance& u, Turn& turn);
-  void refuseCarrying(const Utterance& u, Turn& turn);
-
-  /// Of the language of the talk.
-  const Grammar& grammar() const;
-  /// The places of the description that a name, "here" or "it" means.
-  std::vector<Id> described(const SaidName& name) const;
-  /// The places of the map where a name is confirmed.
-  std::vector<Id> confirmedPlaces(const std::string& name) const;
-  /// The places of the map with a name of the same kind: all toilets.
-  std::vector<Id> placesOfKind(const std::string& name) const;
-
-  /// Whether a name of another language may mean several names: "casa de banho" the toilet and the
-  /// bathroom.
-  bool areOfOtherNames(const std::string& name, const std::vector<Id>& places) const;
-  /// What was told of a place that is not on the map, and how to tell where it is; false if nothing
-  /// was told.
-  bool tellOnlyTold(const std::string& name, Reply& reply);
-  /// The places that a name, "here" or "it" refers to; adds the reason to `reply` if none.
-  std::vector<Id> resolve(const SaidName& name, Reply& reply);
-  std::vector<Id> resolve(const Utterance& u, const std::string& slot, Reply& reply);
-  /// Generated id and name: "CC04, corridor"; "SS02, perhaps kitchen"; "SS03".
-  std::string label(Id place) const;
-  /// Name, else generated id: "corridor"; "kitchen"; "SS03".
-  std::string shortName(Id place) const;
-  std::vector<std::string> labels(const std::vector<Id>& places) const;
-  /// A name with its article in the language of the talk: "the kitchen", but "room 5".
-  std::string said(const std::string& name) const;
-  std::vector<std::string> said(std::vector<std::string> names) const;
-  /// As said(), where a sentence begins that speaks of one: "The kitchen", but "stairs".
-  std::string subject(const std::string& name) const;
 
   DialogueParams params_;
   TopoParser parser_;
@@ -538,67 +462,40 @@ class Dialogue {
   std::optional<hyselam::Point2> position_;  ///< then
   Id told_at_ = 0;                           ///< DialogueState::told_at
 
-  struct KnownBefore {
-    /// Nothing before it can be taken back: a place that it was about is gone, or it is too long
-    /// ago.
-    enum class Barrier { kNone, kPlaceGone, kTooLongAgo };
-    Barrier barrier = Barrier::kNone;
-    PlaceMan::Names names;
-    std::vector<DescribedWall> walls;
-    std::vector<Id> virtual_places;
-    /// Nothing: only statements, which the description takes back itself, and their names.
-    std::optional<DescriptionBuilder::Memory> told;
-    std::size_t statements = 0;  ///< before ...
-    std::size_t after = 0;       ///< ... and after it
-    Id told_at = 0;
-  };
-  class Change;  // of what is known, while it is made
-  KnownBefore knownNow() const;
-  void remember(KnownBefore before);
-  /// Whether names, walls or virtual places are others now.
-  bool isChanged(const KnownBefore& since) const;
-  /// The changes up to that one cannot be taken back any more.
-  void bar(std::size_t change, KnownBefore::Barrier why);
-  /// Changes of names of lost places, as all before them; `known` when they were there.
-  void barChangesOf(const std::vector<Id>& lost, const KnownBefore& known);
-  /// Why "undo that" can take nothing back, as a phrase; "" where it can.
-  std::string barrierToUndo() const;
-  /// As nextUndo(), whether things were spoken of since or not.
-  std::string lastChange() const;
-  /// The map as it was before, without what statements have told.
-  void restoreKnown(const KnownBefore& before, Reply& reply);
-  /// It is under way from now on, to that place or, for 0, behind a person; how long it has stood
-  /// before is no sign that it has arrived.
-  void setOut(Id to);
-  /// A robot that stands in the place it was sent to is not under way any more.
-  void seeWhetherArrived();
-  /// A robot that drives stops when a door is shut, which may be on its way.
-  void haltAtDoor(const DescribedWall& wall, Reply& out);
   /// What is in no DialogueState: nothing of it outlives restore().
   struct Talk {
-    bool entered = false;  ///< the robot's place or the map has changed; not processed yet
-    Id asked = 0;          ///< the place for which a question was considered since entering it
+    // Names on the map
     std::optional<PlaceAssignment> match;
     Uncertainty unsure;                     ///< of match
     std::map<std::string, Id> told_likely;  ///< Uncertainty::likely as people know it
+    std::vector<std::string> wondered;      ///< names whose place was said not to be sure
+    bool wonders_anew = false;              ///< ... in this turn
+    std::set<std::string> accepted;         ///< names that a person has agreed to (NameKey::full)
+
+    // What the robot asks
     QuestionKeeper questions;
-    std::optional<Id> under_way;         ///< the place that it drives to; 0: it follows a person
-    std::vector<NamedGoal> way;          ///< where it was sent last, what is left of it ...
-    bool halted = false;                 ///< ... and it was stopped on the way
-    std::vector<std::string> wondered;   ///< names whose place was said not to be sure
-    bool wonders_anew = false;           ///< ... in this turn
+    bool entered = false;  ///< the robot's place or the map has changed; not processed yet
+    Id asked = 0;          ///< the place for which a question was considered since entering it
+
+    // What was said before
+    Id subject = 0;                      ///< antecedent of "it"
+    bool described_last = false;         ///< the last utterance told of places: "it" is one of them
+    bool others_asked = false;           ///< the last question was another node's
+    std::vector<std::string> last_said;  ///< for "what?"
     bool is_here = false;                ///< it was asked about where it is told to be
     bool is_trial = false;               ///< only to see whether a sentence would be taken
-    hyselam::Pose2 stood_at;             ///< where it was when it moved last
-    double stands_since = 0.0;           ///< [s]
-    std::set<std::string> accepted;      ///< names that a person has agreed to (NameKey::full)
-    std::vector<std::string> last_said;  ///< for "what?"
-    bool described_last = false;         ///< the last utterance told of places: "it" is one of them
-    std::vector<KnownBefore> changes;    ///< the last one last
-    bool changing = false;               ///< within a Change
-    bool things_since = false;           ///< things were spoken of since the last change
-    bool others_asked = false;           ///< the last question was another node's
-    Id subject = 0;                      ///< antecedent of "it"
+
+    // Driving
+    std::optional<Id> under_way;  ///< the place that it drives to; 0: it follows a person
+    std::vector<NamedGoal> way;   ///< where it was sent last, what is left of it ...
+    bool halted = false;          ///< ... and it was stopped on the way
+    hyselam::Pose2 stood_at;      ///< where it was when it moved last
+    double stands_since = 0.0;    ///< [s]
+
+    // "Undo that"
+    ChangeHistory changes;
+    bool changing = false;      ///< within a Change
+    bool things_since = false;  ///< things were spoken of since the last change
   };
   Talk talk_;
 };

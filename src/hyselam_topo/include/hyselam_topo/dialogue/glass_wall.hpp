@@ -12,7 +12,7 @@
 #include "hyselam_common/occupancy_grid.hpp"
 #include "hyselam_common/parameters.hpp"
 #include "hyselam_language/building/described_building.hpp"
-#include "hyselam_topological_map/topological_map.hpp"
+#include "hyselam_topo/dialogue/described_wall.hpp"
 
 namespace hyselam_topo {
 
@@ -32,18 +32,8 @@ struct GlassWallParams {
   void validate() const;
 };
 
-/// A glass wall on the floor, from corner to corner, in the frame of the map [m].
-struct GlassWall {
-  hyselam::Point2 a;
-  hyselam::Point2 b;
-
-  double length() const;
-  double distanceTo(hyselam::Point2 point) const;  ///< from a point to the nearest point of it
-};
-
-bool operator==(const GlassWall& a, const GlassWall& b);
-
-/// The search for a glass wall from one robot pose.
+/// The search for a glass wall from one robot pose; of walls that people call virtual, too, which
+/// stand between corners likewise.
 class GlassWallSearch {
  public:
   /// Looks from `robot` (pose in the frame of the map) to a side. Throws hyselam::ParameterError
@@ -54,12 +44,12 @@ class GlassWallSearch {
 
   /// Between the corner nearest to the robot and the next one to it that it can be joined with; if
   /// it has none, the second nearest, and so on. Not one that was rejected.
-  std::optional<GlassWall> likeliest() const;
+  std::optional<WallLine> likeliest() const;
   /// The one whose length is nearest to the described one [m]; of equal ones the nearest to the
   /// robot. Not one that was rejected, unless it fits better by more than 0.3 m.
-  std::optional<GlassWall> ofLength(double length) const;
+  std::optional<WallLine> ofLength(double length) const;
   /// Excludes a wall that a person has denied.
-  void reject(const GlassWall& wall);
+  void reject(const WallLine& wall);
 
   /// Convex corners, nearest to the robot first.
   const std::vector<hyselam::Point2>& corners() const { return corners_; }
@@ -71,28 +61,28 @@ class GlassWallSearch {
  private:
   /// The walls between two corners, where `is_free` of their numbers.
   void joinCorners(const std::function<bool(std::size_t, std::size_t)>& is_free);
-  bool rejected(const GlassWall& wall) const;
+  bool rejected(const WallLine& wall) const;
 
   hyselam::Pose2 robot_;
   Side side_;
   GlassWallParams params_;
   std::vector<hyselam::Point2> corners_;
   std::vector<hyselam::Point2> seen_;
-  std::vector<GlassWall> pairs_;  // by the nearness of their first, then of their second corner
-  std::vector<GlassWall> rejected_;
+  std::vector<WallLine> pairs_;  // by the nearness of their first, then of their second corner
+  std::vector<WallLine> rejected_;
 };
 
-/// Makes the cells occupied that the walls cross, so that no 4- or 8-connected path leads
-/// through; what lies outside of the grid is left out. Never draw into the grid of a SLAM, but into
-/// a copy.
-void drawGlassWalls(const std::vector<GlassWall>& walls, hyselam::OccupancyGrid* grid);
+// ---- Former names, until 2.0.0 ----
 
-/// Puts the walls into the topological map, as glass or as virtual walls, each into the place that
-/// it limits (by the nearest cells on its two sides; into both if they differ), unless it is there.
-void addGlassWalls(const std::vector<GlassWall>& walls, AugmentedTopologicalMap* map,
-                   WallKind kind = WallKind::kGlass);
-
-/// Whether two walls are one: their ends are within 0.3 m.
-bool sameWall(const GlassWall& a, const GlassWall& b);
+using GlassWall [[deprecated("it is a WallLine")]] = WallLine;
+[[deprecated("use drawWalls()")]] inline void drawGlassWalls(const std::vector<WallLine>& walls,
+                                                             hyselam::OccupancyGrid* grid) {
+  drawWalls(walls, grid);
+}
+[[deprecated("use putWall()")]] inline void addGlassWalls(const std::vector<WallLine>& walls,
+                                                          AugmentedTopologicalMap* map,
+                                                          WallKind kind = WallKind::kGlass) {
+  for (const WallLine& line : walls) putWall({line, kind}, map);
+}
 
 }  // namespace hyselam_topo

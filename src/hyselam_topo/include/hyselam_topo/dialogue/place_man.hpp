@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "hyselam_language/building/place_names.hpp"
-#include "hyselam_topo/dialogue/glass_wall.hpp"
+#include "hyselam_topo/dialogue/described_wall.hpp"
 #include "hyselam_topological_map/carry_over.hpp"
 #include "hyselam_topological_map/topological_map.hpp"
 
@@ -30,13 +30,8 @@ NameState nameStateOf(const Place& place);
 
 /// The words of a place, confirmed ones only if there are any.
 std::vector<std::string> namesOf(const Place& place);
-
-/// A wall that a person has described.
-struct DescribedWall {
-  GlassWall line;
-  WallKind kind = WallKind::kGlass;  ///< or kVirtual
-};
-bool operator==(const DescribedWall& a, const DescribedWall& b);
+/// The confirmed ones of the words of a place; none if there are only guesses.
+std::vector<std::string> confirmedOf(const std::vector<PlaceTerm>& words);
 
 class PlaceMan {
  public:

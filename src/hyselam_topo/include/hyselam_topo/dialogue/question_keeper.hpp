@@ -41,18 +41,22 @@ struct Question {
     kOpenDoor      ///< is the door that `wall` shuts open again? Then drive to `goals`
   };
   Kind kind = Kind::kNone;
-  Id place = 0;
-  std::vector<std::string> names;
-  hyselam::Point2 point;
-  DescribedWall wall;
+  Id place = 0;  ///< of the kinds about names (0 of a kNewName that was told), kPose
+  std::vector<std::string> names;  ///< likewise; kRadius: of the virtual place
+  hyselam::Point2 point;           ///< kRadius: its middle
+  DescribedWall wall;              ///< kWall, kWallLength, kOpenDoor
   /// kWall, kWallLength: the search for the described glass wall, continued with the answer.
   std::shared_ptr<GlassWallSearch> search;
+  /// What is heard after the answer. kProposal: what may have been meant; kNewName: the statement
+  /// that has the name, empty: it is that of `place`; kSpeaker: what could not be understood
+  /// without the speaker; kPose, after a "no": what was said, from "you are in the canteen" on.
+  std::string sentence;
+  /// kPose, after a "yes": what was said behind "you are in the canteen".
+  std::string rest;
   /// kProposal: what to ask after a "no".
   std::vector<std::string> alternatives;
-  /// kNewName: the statement that has the name; empty: it is that of `place`.
-  std::string sentence;
-  std::vector<MovedName> moved;
-  std::vector<NamedGoal> goals;
+  std::vector<MovedName> moved;  ///< kMoved
+  std::vector<NamedGoal> goals;  ///< kGo, kOpenDoor
 
   /// Whether it is about the name of `place`.
   bool isAboutName() const;

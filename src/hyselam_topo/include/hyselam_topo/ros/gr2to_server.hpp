@@ -14,7 +14,7 @@
 
 #include "hyselam_common/ros/diagnostics.hpp"
 #include "hyselam_gr2to/background_gr2to.hpp"
-#include "hyselam_topo/ros/parameters.hpp"
+#include "hyselam_topo/ros/gr2to_parameters.hpp"
 
 namespace hyselam_topo {
 

@@ -1,4 +1,4 @@
-#include "hyselam_topo/ros/parameters.hpp"
+#include "hyselam_topo/ros/gr2to_parameters.hpp"
 
 #include "hyselam_gr2to/segmentation/border_model.hpp"
 

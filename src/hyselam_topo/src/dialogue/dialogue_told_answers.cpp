@@ -6,20 +6,11 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_language/building/describe_building.hpp"
 #include "hyselam_topo/dialogue/dialogue.hpp"
+#include "neighbors.hpp"
 #include "told_facts.hpp"
 
 namespace hyselam_topo {
 namespace {
-
-bool areJoined(const AugmentedTopologicalMap& map, const std::vector<Id>& a,
-               const std::vector<Id>& b) {
-  const auto has = [](const std::vector<Id>& all, Id id) {
-    return std::find(all.begin(), all.end(), id) != all.end();
-  };
-  return std::any_of(map.edges.begin(), map.edges.end(), [&](const Edge& edge) {
-    return (has(a, edge.a) && has(b, edge.b)) || (has(a, edge.b) && has(b, edge.a));
-  });
-}
 
 double areaOf(const AugmentedTopologicalMap& map, const std::vector<Id>& places) {
   double area = 0.0;
@@ -28,36 +19,6 @@ double areaOf(const AugmentedTopologicalMap& map, const std::vector<Id>& places)
 }
 
 }  // namespace
-
-const Grammar& Dialogue::grammar() const {
-  return parser_.grammar(knowsLanguage(language_) ? language_
-                                                  : parser_.grammars().front().language());
-}
-
-std::vector<Id> Dialogue::described(const SaidName& name) const {
-  if (name.reference.empty()) return builder_.find(name.text);
-  const Id place = name.reference == "here" ? robot().place : talk_.subject;
-  const Place* known = places_.map().findPlace(place);
-  std::vector<Id> found;
-  if (known == nullptr) return found;
-  for (const std::string& each : namesOf(*known)) {
-    for (const Id id : builder_.find(each)) {
-      if (std::find(found.begin(), found.end(), id) == found.end()) found.push_back(id);
-    }
-  }
-  return found;
-}
-
-std::vector<Id> Dialogue::confirmedPlaces(const std::string& name) const {
-  std::vector<Id> found = places_.find(name);
-  found.erase(std::remove_if(found.begin(), found.end(),
-                             [&](Id id) {
-                               return nameStateOf(*places_.map().findPlace(id)) !=
-                                      NameState::kConfirmed;
-                             }),
-              found.end());
-  return found;
-}
 
 void Dialogue::answerTold(const Utterance&, Turn& turn) {
   const Phrases& p = phrases();
@@ -181,19 +142,6 @@ void Dialogue::answerWhatIsLocated(const Utterance& u, Turn& turn) {
       found.empty() ? p.say("not_known") : p.say("found_there", {{"places", p.list(said(found))}}));
 }
 
-std::vector<Id> Dialogue::placesOfKind(const std::string& name) const {
-  const std::string head = names_.headOf(names_.singular(name));
-  std::vector<Id> found;
-  for (const Place& place : places_.map().places) {
-    const bool is = std::any_of(place.words.begin(), place.words.end(), [&](const PlaceTerm& word) {
-      return places_.sameName(word.text, name) ||
-             (!head.empty() && names_.headOf(word.text) == head);
-    });
-    if (is) found.push_back(place.id);
-  }
-  return found;
-}
-
 void Dialogue::answerIsKnown(const Utterance& u, Turn& turn) {
   const Phrases& p = phrases();
   const std::vector<SaidName> said = u.names("place");
@@ -263,27 +211,6 @@ void Dialogue::answerWhoAmI(const Utterance&, Turn& turn) {
   const std::string& speaker = builder_.speaker();
   turn.reply.sentences.push_back(speaker.empty() ? phrases().say("speaker_unknown")
                                                  : phrases().say("speaker", {{"name", speaker}}));
-}
-
-// ---- What it cannot do ----
-
-void Dialogue::refuseCorridor(const Utterance&, Turn& turn) {
-  say("cannot_follow", turn);
-}
-
-void Dialogue::refuseComing(const Utterance&, Turn& turn) {
-  say("cannot_come", turn);
-}
-
-void Dialogue::refuseCarrying(const Utterance& u, Turn& turn) {
-  const std::vector<SaidName> to = u.names("to");
-  if (to.empty()) {
-    turn.reply.unknown_name = true;  // of a thing: another node may know it
-    say("cannot_carry", turn);
-    return;
-  }
-  turn.reply.sentences.push_back(
-      phrases().say("cannot_carry_there", {{"place", said(to.front().text)}}));
 }
 
 }  // namespace hyselam_topo

@@ -1,4 +1,4 @@
-// What the robot asks. What is answered: dialogue_answering.cpp.
+// What the robot asks. What is answered: dialogue_person_answers.cpp.
 #include <algorithm>
 
 #include "dialogue_turn.hpp"
