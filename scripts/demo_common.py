@@ -1,6 +1,7 @@
 """What the acts of the demo and its page share: files of the output folder, and what is true in the simulated building."""
 import json
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -55,6 +56,15 @@ def report_command(usage, checks, page):
 def common_name(name):
     """The name of a place of the plan, as people say it."""
     return "corridor" if name in CORRIDORS else name
+
+
+def means(said, name):
+    """Whether what somebody calls a room is its name on the plan: "Anna" or "Anna's" of Anna's office, "the lab" of the laboratory."""
+    def words(text):
+        short = {"lab": "laboratory", "loo": "toilet", "toilets": "toilet"}
+        of = re.sub("['\u2019]s?(?![a-z])", "", text.lower()).split()
+        return {short.get(word, word) for word in of} - {"the", "office", "room"}
+    return bool(words(name)) and words(said) == words(name)
 
 
 def start():

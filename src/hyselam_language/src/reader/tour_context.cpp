@@ -88,6 +88,19 @@ bool TourContext::isAcross(std::size_t room) const {
   return countOf(words_.across, begin, a.begin) > 0 && is_new_[room - 1] == 0;
 }
 
+/// "Anna is across from the workshop", of which the side has been told: the mention of the workshop
+/// before; the room itself without.
+std::size_t TourContext::acrossFrom(std::size_t room) const {
+  if (room + 1 >= rooms_.size()) return room;
+  const Mention &a = rooms_[room], &b = rooms_[room + 1];
+  if (sentence_[a.begin] != sentence_[b.begin] || countOf(words_.across, a.end, b.begin) == 0)
+    return room;
+  for (std::size_t k = room; k-- > 0;) {
+    if (room_of_[k] == room_of_[room + 1] && ruled_[k].side != Ruled::Side::kUnknown) return k;
+  }
+  return room;
+}
+
 void TourContext::rule() {
   using Side = Ruled::Side;
   const auto turned = [](Side side) {
@@ -107,6 +120,8 @@ void TourContext::rule() {
       now = {cues_[own[m]].left ? Side::kLeft : Side::kRight, "own", 0};
     } else if (before != m) {
       now = {ruled_[before].side, "known", ruled_[before].steps + 1};
+    } else if (const std::size_t other = acrossFrom(m); other != m) {
+      now = {turned(ruled_[other].side), "across", ruled_[other].steps + 1};
     } else if (m > 0 && ruled_[m - 1].side != Side::kUnknown) {
       const bool across = isAcross(m);
       now = {across ? turned(ruled_[m - 1].side) : ruled_[m - 1].side,

@@ -32,6 +32,8 @@ class TourContext {
   static Features mirrored(Features features);
   /// Whether a word for a side belongs to the mention.
   bool hasOwnSide(std::size_t room) const { return ruled_[room].how == "own"; }
+  /// Whether its room was spoken of before, and nothing new is said of its side.
+  bool isKnown(std::size_t room) const { return ruled_[room].how == "known"; }
   /// How the second of a pair lies to the first.
   Features ofPair(std::size_t first, std::size_t second) const;
   /// Where in its row it is: "first", "at the end".
@@ -57,6 +59,7 @@ class TourContext {
   std::vector<std::size_t> ownCues() const;
   void rule();
   bool isAcross(std::size_t room) const;
+  std::size_t acrossFrom(std::size_t room) const;
   void addCueBefore(std::size_t room, std::size_t rank, const Cue& cue, Features* out) const;
   void addCueBehind(std::size_t room, const Cue& cue, bool side_said_before, Features* out) const;
   void addGap(const Mention& first, const Mention& second, const std::string& mark,

@@ -1,5 +1,6 @@
 #include "tour_evidence.hpp"
 
+#include <algorithm>
 #include <map>
 #include <string>
 
@@ -25,13 +26,16 @@ TourEvidence evidenceOf(const TourModel& model, const TourContext& context,
   for (std::size_t mention = 0; mention < room_of.size(); ++mention) {
     const std::size_t room = room_of[mention];
     const Features side = context.ofSide(mention);
-    if (!side.empty()) {
+    if (!side.empty() && !context.isKnown(mention)) {
       const Probabilities p = told(model.of_side, side);
       evidence.addSide(room, context.hasOwnSide(mention) ? weights.own_side : weights.side,
                        p.at(kTourLeft), p.at(kTourRight));
     }
+    // Of several mentions the place in the row is told once.
+    const double share =
+        1.0 / static_cast<double>(std::count(room_of.begin(), room_of.end(), room));
     const Probabilities p = told(model.of_position, context.ofPosition(mention));
-    evidence.addPosition(room, weights.position, p.at(kTourFirst), p.at(kTourLast),
+    evidence.addPosition(room, share * weights.position, p.at(kTourFirst), p.at(kTourLast),
                          p.at(kTourInner));
   }
   for (const auto& [first, second] : context.pairs()) {

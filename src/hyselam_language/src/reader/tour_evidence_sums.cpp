@@ -7,7 +7,7 @@ namespace hyselam_topo {
 namespace {
 
 /// Nothing is impossible: people say what cannot be meant.
-constexpr double kSmallest = 1e-3;
+constexpr double kSmallest = 0.05;
 
 double weighed(double weight, double probability) {
   return weight * std::log(std::max(probability, kSmallest));

@@ -27,7 +27,7 @@ constexpr const char* kTourInner = "inner";
 /// read with the same words, so that they are surer together than they should be.
 struct TourWeights {
   double own_side = 1.0;  ///< of a mention with a word for a side of its own
-  double side = 0.5;
+  double side = 0.3;
   double pair = 1.0;
   double far_pair = 0.5;  ///< of two with one between them
   double position = 0.7;

@@ -26,7 +26,7 @@ struct TourMatchParams {
   double first_temperature = 4;  ///< it cools down to 1 in the first third
   /// Odds that a name is of no door of the corridor, as a logarithm: rooms behind other rooms,
   /// people and things taken for rooms.
-  double absent = 1.5;
+  double absent = 3.0;
   double facing = 2.0;  ///< doors of both sides that are this near each other face each other [m]
 };
 
