@@ -10,6 +10,7 @@
 #include "hyselam_objects/pcl/cloud_io.hpp"
 #include "hyselam_objects/pcl/find_model.hpp"
 #include "hyselam_objects/segmentation/segment_cloud.hpp"
+#include "hyselam_sim/pile.hpp"
 #include "nlohmann/json.hpp"
 #include "run_program.hpp"
 
@@ -77,6 +78,103 @@ TEST(FindModel, FindsNothingWhereThereAreOnlyScatteredPoints) {
   scattered.width = 2000;
   scattered.height = 1;
   EXPECT_TRUE(findModel(model, scattered).empty());
+}
+
+/// Depth in millimetres of a camera as a Kinect's.
+OrganizedCloud cloudOf(const hyselam_sim::CameraParams& camera,
+                       const hyselam_sim::CameraFrame& frame) {
+  OrganizedCloud out;
+  out.width = camera.width;
+  out.height = camera.height;
+  const auto focal = static_cast<float>(camera.focalLength());
+  for (int v = 0; v < out.height; ++v) {
+    for (int u = 0; u < out.width; ++u) {
+      const float mm = frame.depth.at<std::uint16_t>(v, u);
+      const float z = mm > 0.0f ? 0.001f * mm : kNothing;
+      out.points.emplace_back((static_cast<float>(u) - 319.5f) * z / focal,
+                              (static_cast<float>(v) - 239.5f) * z / focal, z);
+    }
+  }
+  return out;
+}
+
+Eigen::Isometry3f isometryOf(const hyselam_sim::Pose3& pose) {
+  Eigen::Isometry3f out = Eigen::Isometry3f::Identity();
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) out(r, c) = static_cast<float>(pose.turn(r, c));
+    out(r, 3) = static_cast<float>(pose.at[r]);
+  }
+  return out;
+}
+
+hyselam_sim::CameraParams kinect() {
+  hyselam_sim::CameraParams camera;
+  camera.view = 2.0 * std::atan(320.0 / 525.0);
+  return camera;
+}
+
+std::vector<ModelView> viewsAround(const hyselam_sim::PlacedArticle& thing, int count) {
+  std::vector<ModelView> out;
+  hyselam::Rng rng(1);
+  for (int i = 0; i < count; ++i) {
+    const hyselam_sim::Pose3 pose =
+        hyselam_sim::cameraAround(2.0 * hyselam::kPi * i / count, 0.7, 0.7);
+    out.push_back({cloudOf(kinect(), viewOfPile(kinect(), {thing}, pose, rng)), isometryOf(pose)});
+  }
+  return out;
+}
+
+TEST(LearnModel, JoinsWhatStandsOnTheTable) {
+  const auto thing = hyselam_sim::standing(hyselam_sim::householdThing("drill"));
+  const SurfaceModel model = learnModel(viewsAround(thing, 3));
+  ASSERT_GT(model.cloud.size(), 10000u);
+  ASSERT_EQ(model.seen_from.size(), model.cloud.size());
+  std::size_t near = 0;
+  std::vector<Point> cameras;
+  for (std::size_t i = 0; i < model.cloud.size(); ++i) {
+    const Point& p = model.cloud.points[i];
+    const cv::Vec3d at{p.x(), p.y(), p.z()};
+    near += thing.article->distance(thing.pose.inverse() * at) < 0.005;
+    if (cameras.empty() || cameras.back() != model.seen_from[i]) {
+      cameras.push_back(model.seen_from[i]);
+    }
+  }
+  EXPECT_GT(static_cast<double>(near), 0.98 * static_cast<double>(model.cloud.size()));
+  EXPECT_EQ(cameras.size(), 3u);
+
+  const TemporaryDirectory directory;
+  writePcd(directory / "model.pcd", model.cloud, std::vector<std::uint32_t>(model.cloud.size(), 2),
+           model.seen_from);
+  EXPECT_EQ(readPcd(directory / "model.pcd").seen_from, model.seen_from);
+}
+
+TEST(LearnModel, RefusesViewsOfNothing) {
+  EXPECT_THROW(learnModel({}), hyselam::InputError);
+  hyselam::Rng rng(1);
+  const hyselam_sim::Pose3 pose = hyselam_sim::cameraAround(0.0, 0.7, 0.7);
+  const OrganizedCloud table = cloudOf(kinect(), viewOfPile(kinect(), {}, pose, rng));
+  EXPECT_THROW(learnModel({{table, isometryOf(pose)}}), hyselam::InputError);
+}
+
+TEST(FindModel, FindsAModelOfSeveralViewsFromAnotherSide) {
+  const auto thing = hyselam_sim::standing(hyselam_sim::householdThing("drill"));
+  SurfaceModel model = learnModel(viewsAround(thing, 6));
+  hyselam::Rng rng(2);
+  const hyselam_sim::Pose3 pose = hyselam_sim::cameraAround(1.2, 0.85, 0.8);
+  const OrganizedCloud scene = cloudOf(kinect(), viewOfPile(kinect(), {thing}, pose, rng));
+  FindModelParams params;  // for a small thing
+  params.scene_sampling = 0.01;
+  params.descriptor_radius = 0.045;
+  const auto found = findModel(model, scene, params);
+  ASSERT_FALSE(found.empty());
+  // The model's frame is the table's.
+  const Eigen::Isometry3d table = isometryOf(pose.inverse()).cast<double>();
+  const Eigen::Isometry3d off = table.inverse() * found[0].model_in_scene;
+  EXPECT_LT(off.translation().norm(), 0.02);
+  EXPECT_LT(Eigen::AngleAxisd(off.linear()).angle(), 0.1);
+  // As if all of it had been seen from the middle of the table, its normals point inwards.
+  model.seen_from.clear();
+  EXPECT_TRUE(findModel(model, scene, params).empty());
 }
 
 TEST(FindModelTool, TellsPosesAndWritesJson) {

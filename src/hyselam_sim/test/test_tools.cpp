@@ -59,6 +59,25 @@ TEST_F(Tools, EqualSeedsGiveEqualBytesAndOtherSeedsOthers) {
   EXPECT_FALSE(a == content(file("c.bag")));
 }
 
+TEST_F(Tools, DrawsPilesBySeed) {
+  for (const char* name : {"a", "b"}) {
+    ASSERT_EQ(run(HYSELAM_PILE, "--seed 3 --things 3 --with mug --out " + file(name).string() +
+                                    " --json " + file("j.json").string()),
+              0)
+        << content(file("stderr"));
+  }
+  const std::string a = content(file("a.pcd"));
+  EXPECT_GT(a.size(), 640U * 480U * 16U);
+  EXPECT_TRUE(a == content(file("b.pcd")));
+  EXPECT_TRUE(fs::exists(file("a.png")));
+  const nlohmann::json json = nlohmann::json::parse(content(file("j.json")));
+  EXPECT_EQ(json.at("things").size(), 3U);
+  EXPECT_GE(json.at("visible").get<double>(), 0.4);
+  EXPECT_EQ(json.at("thing_in_camera").size(), 4U);
+  expectError(run(HYSELAM_PILE, "--with elephant --out " + file("c").string()), "elephant");
+  expectError(run(HYSELAM_PILE, "--show mug --with tin --out " + file("c").string()), "");
+}
+
 TEST_F(Tools, FilmsARun) {
   ASSERT_EQ(simulate("--route small --out " + file("run.bag").string()), 0);
   const std::string options =

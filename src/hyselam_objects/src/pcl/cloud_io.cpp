@@ -5,6 +5,7 @@
 #include <pcl/io/pcd_io.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <limits>
 #include <sstream>
@@ -31,6 +32,27 @@ T valueAt(const pcl::PCLPointCloud2& cloud, std::size_t i, const pcl::PCLPointFi
   T value;
   std::memcpy(&value, &cloud.data[i * cloud.point_step + field.offset], sizeof value);
   return value;
+}
+
+using Axes = std::array<const pcl::PCLPointField*, 3>;
+
+/// The fields of a point, their names with this prefix.
+Axes findAxes(const pcl::PCLPointCloud2& cloud, const std::string& path,
+              const std::string& prefix) {
+  Axes out{};
+  for (std::size_t a = 0; a < out.size(); ++a) {
+    const std::string name = prefix + "xyz"[a];
+    out[a] = find(cloud, name);
+    if (out[a] == nullptr || out[a]->datatype != pcl::PCLPointField::FLOAT32) {
+      throw InputError(path, "field " + name, "is missing or no 32-bit float");
+    }
+  }
+  return out;
+}
+
+Point pointAt(const pcl::PCLPointCloud2& cloud, std::size_t i, const Axes& axes) {
+  return {valueAt<float>(cloud, i, *axes[0]), valueAt<float>(cloud, i, *axes[1]),
+          valueAt<float>(cloud, i, *axes[2])};
 }
 
 }  // namespace
@@ -74,12 +96,9 @@ CloudFile readPcd(const std::string& path) {
   CloudFile out;
   out.cloud.width = static_cast<int>(raw.width);
   out.cloud.height = static_cast<int>(raw.height);
-  const pcl::PCLPointField* axes[3] = {find(raw, "x"), find(raw, "y"), find(raw, "z")};
-  for (int a = 0; a < 3; ++a) {
-    if (axes[a] == nullptr || axes[a]->datatype != pcl::PCLPointField::FLOAT32) {
-      throw InputError(path, std::string("field ") + "xyz"[a], "is missing or no 32-bit float");
-    }
-  }
+  const auto axes = findAxes(raw, path, "");
+  const bool has_viewpoint = find(raw, "vp_x") != nullptr;
+  const auto viewpoint = has_viewpoint ? findAxes(raw, path, "vp_") : axes;
   const pcl::PCLPointField* color = find(raw, "rgba");
   if (color == nullptr) color = find(raw, "rgb");
   const pcl::PCLPointField* label = find(raw, "label");
@@ -94,8 +113,8 @@ CloudFile readPcd(const std::string& path) {
   if (label != nullptr) out.labels.resize(size);
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (std::size_t i = 0; i < size; ++i) {
-    Point p(valueAt<float>(raw, i, *axes[0]), valueAt<float>(raw, i, *axes[1]),
-            valueAt<float>(raw, i, *axes[2]));
+    const Point p = pointAt(raw, i, axes);
+    if (has_viewpoint) out.seen_from.push_back(pointAt(raw, i, viewpoint));
     out.cloud.points[i] = p.allFinite() ? p : Point(nan, nan, nan);
     if (color != nullptr) {
       out.cloud.colors[i] = valueAt<std::uint32_t>(raw, i, *color) & 0xffffffu;
@@ -106,7 +125,7 @@ CloudFile readPcd(const std::string& path) {
 }
 
 void writePcd(const std::string& path, const OrganizedCloud& cloud,
-              const std::vector<std::uint32_t>& labels) {
+              const std::vector<std::uint32_t>& labels, const std::vector<Point>& seen_from) {
   const bool has_color = !cloud.colors.empty();
   pcl::PCLPointCloud2 raw;
   raw.width = static_cast<std::uint32_t>(cloud.width);
@@ -123,6 +142,9 @@ void writePcd(const std::string& path, const OrganizedCloud& cloud,
   };
   for (const char* axis : {"x", "y", "z"}) add(axis, pcl::PCLPointField::FLOAT32);
   if (has_color) add("rgb", pcl::PCLPointField::FLOAT32);
+  if (!seen_from.empty()) {
+    for (const char* axis : {"vp_x", "vp_y", "vp_z"}) add(axis, pcl::PCLPointField::FLOAT32);
+  }
   add("label", pcl::PCLPointField::UINT32);
   raw.row_step = raw.point_step * raw.width;
   raw.data.resize(cloud.size() * raw.point_step);
@@ -132,6 +154,9 @@ void writePcd(const std::string& path, const OrganizedCloud& cloud,
     if (has_color) {
       std::memcpy(at, &cloud.colors[i], 4);
       at += 4;
+    }
+    for (int a = 0; a < 3 && !seen_from.empty(); ++a, at += 4) {
+      std::memcpy(at, &seen_from.at(i)[a], 4);
     }
     std::memcpy(at, &labels.at(i), 4);
   }

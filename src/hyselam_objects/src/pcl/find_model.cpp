@@ -95,14 +95,15 @@ void describe(KeypointCloud* cloud, double radius) {
 
 /// `least`: points within `radius` that a keypoint has. Far from a camera surfaces become points
 /// here and there: many, that look like nothing.
-KeypointCloud describeKeypoints(const OrganizedCloud& cloud, const char* name, double surface,
-                                double sampling, double radius, int least) {
+KeypointCloud describeKeypoints(const Cloud::Ptr& cloud, const Point& seen_from, const char* name,
+                                double surface, double sampling, double radius, int least) {
   KeypointCloud out;
-  out.all = thinned(toPcl(cloud, name), surface, name);
+  out.all = thinned(cloud, surface, name);
   out.normals.reset(new Normals);
   pcl::NormalEstimation<pcl::PointXYZ, pcl::Normal> estimate;
   estimate.setKSearch(10);
   estimate.setInputCloud(out.all);
+  estimate.setViewPoint(seen_from.x(), seen_from.y(), seen_from.z());
   estimate.compute(*out.normals);
   out.keypoints.reset(new Cloud);
   pcl::UniformSampling<pcl::PointXYZ> sample;
@@ -118,6 +119,31 @@ KeypointCloud describeKeypoints(const OrganizedCloud& cloud, const char* name, d
     out.keypoints = dense;
   }
   describe(&out, radius);
+  return out;
+}
+
+/// The keypoints of all views of a model, each described by what its camera saw: normals point to
+/// where it was, and of a thin part there is the near side only, as in a scene.
+KeypointCloud describeModel(const SurfaceModel& model, const FindModelParams& params) {
+  const Cloud::Ptr all = toPcl(model.cloud, "model");
+  const auto describeView = [&](const Cloud::Ptr& view, const Point& seen_from) {
+    return describeKeypoints(view, seen_from, "model", params.surface_sampling,
+                             params.model_sampling, params.descriptor_radius, 1);
+  };
+  if (model.seen_from.empty()) return describeView(all, Point::Zero());
+  KeypointCloud out;
+  out.keypoints.reset(new Cloud);
+  out.descriptors.reset(new Shots);
+  for (std::size_t i = 0, end = 0; i < model.cloud.size(); i = end) {
+    OrganizedCloud view;
+    for (; end < model.cloud.size() && model.seen_from.at(end) == model.seen_from[i]; ++end) {
+      view.points.push_back(model.cloud.points[end]);
+    }
+    const KeypointCloud described = describeView(toPcl(view, "model"), model.seen_from[i]);
+    *out.keypoints += *described.keypoints;
+    *out.descriptors += *described.descriptors;
+  }
+  out.all = thinned(all, params.surface_sampling, "model");
   return out;
 }
 
@@ -311,12 +337,16 @@ void FindModelParams::validate() const {
 
 std::vector<FoundModel> findModel(const OrganizedCloud& model, const OrganizedCloud& scene,
                                   const FindModelParams& params) {
+  return findModel(SurfaceModel{model, {}}, scene, params);
+}
+
+std::vector<FoundModel> findModel(const SurfaceModel& model, const OrganizedCloud& scene,
+                                  const FindModelParams& params) {
   params.validate();
-  const KeypointCloud in_model = describeKeypoints(
-      model, "model", params.surface_sampling, params.model_sampling, params.descriptor_radius, 1);
-  const KeypointCloud in_scene =
-      describeKeypoints(scene, "scene", params.surface_sampling, params.scene_sampling,
-                        params.descriptor_radius, leastNeighbors(in_model, params));
+  const KeypointCloud in_model = describeModel(model, params);
+  const KeypointCloud in_scene = describeKeypoints(
+      toPcl(scene, "scene"), Point::Zero(), "scene", params.surface_sampling, params.scene_sampling,
+      params.descriptor_radius, leastNeighbors(in_model, params));
   const SceneView view(scene);
   const std::vector<Point> surface = surfaceOf(in_model);
   pcl::KdTreeFLANN<pcl::PointXYZ> scene_tree;

@@ -54,7 +54,9 @@ int main(int argc, char** argv) {
   std::string model_file, scene_file;
   FindModelParams params;
   app.option_defaults()->always_capture_default();
-  app.add_option("MODEL", model_file, "PCD file of the object, from one view or several [m]")
+  app.add_option(
+         "MODEL", model_file,
+         "PCD file of the object, of one view from its origin, or of several by learn_model [m]")
       ->required();
   app.add_option("SCENE", scene_file, "PCD file; z forward, x right, y down as cameras have it [m]")
       ->required();
@@ -68,7 +70,9 @@ int main(int argc, char** argv) {
                  "of a keypoint's surroundings [m]");
 
   return hyselam::runTool(argc, argv, app, [&] {
-    const OrganizedCloud model = readPcd(model_file).cloud, scene = readPcd(scene_file).cloud;
+    const CloudFile file = readPcd(model_file);
+    const SurfaceModel model{file.cloud, file.seen_from};
+    const OrganizedCloud scene = readPcd(scene_file).cloud;
     const std::clock_t begin = std::clock();
     const std::vector<FoundModel> found = findModel(model, scene, params);
     const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;

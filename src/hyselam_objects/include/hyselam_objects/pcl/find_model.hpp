@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "hyselam_common/parameters.hpp"
-#include "hyselam_objects/segmentation/organized_cloud.hpp"
+#include "hyselam_objects/segmentation/learn_model.hpp"
 
 namespace hyselam_objects {
 
@@ -39,10 +39,14 @@ struct FoundModel {
 };
 
 /// The likely poses, the best first; none where the model is not there, one for each part of the
-/// scene that it explains. A scene that is not one view from its origin tells nothing of free
-/// space.
+/// scene that it explains. Of a model of several views each is described as its camera saw it: a
+/// scene shows one side of things. A scene that is not one view from its origin tells nothing of
+/// free space.
 /// @throws hyselam::InputError for clouds with fewer than 100 usable points;
 ///         hyselam::ParameterError.
+std::vector<FoundModel> findModel(const SurfaceModel& model, const OrganizedCloud& scene,
+                                  const FindModelParams& params = {});
+/// A model that was seen from its origin.
 std::vector<FoundModel> findModel(const OrganizedCloud& model, const OrganizedCloud& scene,
                                   const FindModelParams& params = {});
 
