@@ -41,12 +41,12 @@ def angle_between(a, b):
     return abs(math.remainder(a - b, 2 * math.pi))
 
 
-def wait_until(condition, what):
-    deadline = time.monotonic() + WAIT
+def wait_until(condition, what, patience=WAIT, pause=0.01):
+    deadline = time.monotonic() + patience
     while not condition():
         if time.monotonic() > deadline or rospy.is_shutdown():
-            raise AssertionError(f"not within {WAIT:.0f} s: {what() if callable(what) else what}")
-        time.sleep(0.01)
+            raise AssertionError(f"not within {patience:.0f} s: {what() if callable(what) else what}")
+        time.sleep(pause)
 
 
 def delivered(manager="/manager"):
