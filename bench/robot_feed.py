@@ -11,6 +11,10 @@ import sys
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "scripts"))
+
+from planar import compose, inverse, planar  # noqa: E402
+
 PREFIX = pathlib.Path(os.environ.get("HYSELAM_PREFIX", ROOT / "devel"))
 PICTURES = ("/camera/color/image_raw", "/camera/depth/image_raw", "/camera/color/camera_info", "/camera/depth/camera_info")
 
@@ -55,16 +59,6 @@ def prepare(folder, pictures_per_second, size, scan_rate=10, seed=1):
     return folder
 
 
-def compose(a, b):
-    c, s = math.cos(a[2]), math.sin(a[2])
-    return a[0] + c * b[0] - s * b[1], a[1] + s * b[0] + c * b[1], a[2] + b[2]
-
-
-def inverse(a):
-    c, s = math.cos(a[2]), math.sin(a[2])
-    return -c * a[0] - s * a[1], s * a[0] - c * a[1], -a[2]
-
-
 class Round:
     """What a bag holds, ready to be sent again: messages as bytes, the stamp in their header to be replaced."""
 
@@ -84,8 +78,7 @@ class Round:
                 elif topic == "/tf_static":
                     self.static += kind().deserialize(data).transforms
                 elif topic == "/ground_truth":
-                    p = kind().deserialize(data).pose.pose
-                    truth.append((p.position.x, p.position.y, 2 * math.atan2(p.orientation.z, p.orientation.w)))
+                    truth.append(planar(kind().deserialize(data).pose.pose))
                 else:
                     self.events.append((stamp.to_sec() - begin, topic, bytearray(data)))
         # Odometry before the scan of the same time, as on a robot.

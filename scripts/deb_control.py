@@ -30,6 +30,11 @@ OVERRIDES = (
 )
 
 
+def os_release(text):
+    """The fields of /etc/os-release."""
+    return dict(re.findall(r'^(\w+)="?([^"\n]*)"?$', text, re.MULTILINE))
+
+
 def debian_name(package):
     """Of a catkin package, as Debian names those of ROS."""
     return "ros-" + package.replace("_", "-")

@@ -59,15 +59,5 @@ use_workspace() {
 
 # free_port: a TCP port that nobody listens on at this moment, and that the system gives to nobody who does not ask for it.
 free_port() {
-  python3 -c '
-import random, socket
-while True:
-    with socket.socket() as s:
-        port = random.randrange(20000, 32768)
-        try:
-            s.bind(("localhost", port))
-        except OSError:
-            continue
-    print(port)
-    break'
+  python3 "$ROOT/scripts/free_port.py"
 }

@@ -22,10 +22,11 @@ class BenchAllTest(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.root = pathlib.Path(folder.name) / "tree"
-        (self.root / "bench").mkdir(parents=True)
-        shutil.copy(ROOT / "bench/all", self.root / "bench/all")
+        for program in ("bench/all", "scripts/records.py"):
+            (self.root / program).parent.mkdir(parents=True)
+            shutil.copy(ROOT / program, self.root / program)
         (self.root / "bench/all.yaml").write_text(yaml.safe_dump({"steps": STEPS}))
-        for command in (["init", "--quiet"], ["add", "bench"], ["commit", "--quiet", "-m", "x"]):
+        for command in (["init", "--quiet"], ["add", "bench", "scripts"], ["commit", "--quiet", "-m", "x"]):
             subprocess.run(["git", "-C", str(self.root), "-c", "user.name=a", "-c", "user.email=a@b", *command], check=True)
 
     def all(self, *arguments, data=None):

@@ -16,11 +16,11 @@ from geometry_msgs.msg import PointStamped, PoseArray, PoseWithCovarianceStamped
 from hyselam_msgs.msg import AugmentedTopologicalMap, PlaceState, Wall, WallArray
 from hyselam_msgs.srv import (AddGlassWall, AddVirtualPlace, NamePlace, StatePath, TellRobot, UseLanguage, WhereAmI, WordToPose)
 from nav_msgs.msg import OccupancyGrid, Path
-from nodelet.srv import NodeletList, NodeletLoad, NodeletUnload
+from nodelet.srv import NodeletList, NodeletUnload
 from std_msgs.msg import String
 from visualization_msgs.msg import MarkerArray
 
-from localization_rig import Listener, make_map, wait_until, WAIT
+from localization_rig import Listener, load_nodelet, newest_status, read_map, values_of, wait_until, WAIT
 
 # Glass in the south (y = -0.1) and north (y = 2.5) wall of the corridor: x of its ends; where the robot is told.
 GLASS = [("right", (5.0, 6.35), -0.1, 5.6), ("right", (8.0, 9.35), -0.1, 8.6), ("left", (8.5, 12.08), 2.5, 10.3),
@@ -41,14 +41,7 @@ def building(folder, plan=None):
     yaml = os.path.join(folder, "map.yaml")
     subprocess.run(["rosrun", "hyselam_sim", "plan_to_map", plan, yaml, "--resolution", "0.05"],
                    check=True, stdout=subprocess.DEVNULL)
-    keys = dict(line.split(": ", 1) for line in open(yaml).read().splitlines() if ": " in line)
-    with open(os.path.join(folder, keys["image"].strip()), "rb") as file:
-        words = file.read().split(maxsplit=4)
-    width, height, pixels = int(words[1]), int(words[2]), words[4]
-    x, y, _ = (float(v) for v in keys["origin"].strip("[] ").split(","))
-    value = {254: 0, 0: 100}
-    rows = [[value.get(p, -1) for p in pixels[r * width:(r + 1) * width]] for r in range(height)]
-    return make_map([v for row in reversed(rows) for v in row], width, height, float(keys["resolution"]), x, y)
+    return read_map(yaml)
 
 
 class Robot:
@@ -75,18 +68,12 @@ class Robot:
         self.poses = Listener(f"/{name}/goal_poses", PoseArray)
         self.initial = Listener(f"/{name}/initialpose", PoseWithCovarianceStamped)
         self.diagnostics = Listener(f"/{name}/diagnostics", DiagnosticArray)
-        rospy.wait_for_service("/manager/load_nodelet", WAIT)
-        load = rospy.ServiceProxy("/manager/load_nodelet", NodeletLoad)
-        try:
-            self.loaded = load(self.node, "hyselam_topo/TopoEngine", ["/diagnostics"],
-                               [f"/{name}/diagnostics"], [], "").success
-        except rospy.ServiceException:
-            self.loaded = False
+        self.loaded = load_nodelet("hyselam_topo/TopoEngine", self.node, {"/diagnostics": f"/{name}/diagnostics"})
         self.with_gr2to = self.loaded and grid is not None
         if self.with_gr2to:
             rospy.set_param(f"/{name}/gr2to/partial_updates", 0)
-            load(f"/{name}/gr2to", "hyselam_topo/Gr2To", [f"/{name}/map", "/diagnostics"],
-                 [f"/{name}/map_with_glass", f"/{name}/gr2to_diagnostics"], [], "")
+            assert load_nodelet("hyselam_topo/Gr2To", f"/{name}/gr2to",
+                                {f"/{name}/map": f"/{name}/map_with_glass", "/diagnostics": f"/{name}/gr2to_diagnostics"})
         if self.loaded:
             wait_until(lambda: self.human.get_num_connections() > 0 and
                        all(s.subscriber.get_num_connections() > 0 for s in (self.answers, self.places, self.diagnostics)),
@@ -151,14 +138,10 @@ class Robot:
         return " ".join(m.data for m in self.answers.messages[before:])
 
     def status(self):
-        for array in reversed(self.diagnostics.messages):
-            for status in array.status:
-                if status.name == self.node[1:] + ": dialogue":
-                    return status
-        return DiagnosticStatus()
+        return newest_status(self.diagnostics, lambda name: name == self.node[1:] + ": dialogue") or DiagnosticStatus()
 
     def status_value(self, key):
-        return {v.key: v.value for v in self.status().values}.get(key, "")
+        return values_of(self.status()).get(key, "")
 
     def place_at(self, name):
         """The place of the newest map at the middle of a room."""

@@ -15,11 +15,11 @@ from geometry_msgs.msg import PointStamped
 from hyselam_msgs.msg import AugmentedTopologicalMap, Place
 from hyselam_msgs.srv import PlaceAt, TopologicalMapPath
 from nav_msgs.msg import OccupancyGrid
-from nodelet.srv import NodeletList, NodeletLoad, NodeletUnload
+from nodelet.srv import NodeletList, NodeletUnload
 from octomap_msgs.msg import Octomap
 from visualization_msgs.msg import Marker, MarkerArray
 
-from localization_rig import Listener, make_map, wait_until, WAIT
+from localization_rig import Listener, load_nodelet, make_map, newest_status, values_of, wait_until, WAIT
 
 RESOLUTION = 0.05
 LEFT, RIGHT, DOOR = (2.0, 2.0), (6.5, 2.0), (4.05, 2.0)  # middles of the two rooms and of their door
@@ -106,12 +106,7 @@ class Rig:
         self.markers = Listener(f"/{name}/topological_markers", MarkerArray)
         self.projected = Listener(f"/{name}/projected_map", OccupancyGrid)
         self.diagnostics = Listener(f"/{name}/diagnostics", DiagnosticArray)
-        rospy.wait_for_service("/manager/load_nodelet", WAIT)
-        try:
-            self.loaded = rospy.ServiceProxy("/manager/load_nodelet", NodeletLoad)(
-                self.node, "hyselam_topo/Gr2To", ["/diagnostics"], [f"/{name}/diagnostics"], [], "").success
-        except rospy.ServiceException:
-            self.loaded = False
+        self.loaded = load_nodelet("hyselam_topo/Gr2To", self.node, {"/diagnostics": f"/{name}/diagnostics"})
         if self.loaded:
             outputs = (self.maps, self.markers, self.diagnostics)
             wait_until(lambda: self.input.get_num_connections() > 0
@@ -140,14 +135,10 @@ class Rig:
         return sum(int(self.value(f"maps {what}") or 0) for what in ("segmented", "unchanged", "refused"))
 
     def status(self):
-        for array in reversed(self.diagnostics.messages):
-            for status in array.status:
-                if status.name == self.node[1:] + ": places":
-                    return status
-        return DiagnosticStatus()
+        return newest_status(self.diagnostics, lambda name: name == self.node[1:] + ": places") or DiagnosticStatus()
 
     def values(self):
-        return {v.key: v.value for v in self.status().values}
+        return values_of(self.status())
 
     def value(self, key):
         value = self.values().get(key)

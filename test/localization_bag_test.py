@@ -17,7 +17,7 @@ from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import MarkerArray
 
 sys.dont_write_bytecode = True
-from localization_rig import SLOWNESS, Listener, Recording, angle_between, planar, play_bag, wait_until
+from localization_rig import SLOWNESS, Listener, Recording, angle_between, newest_status, planar, play_bag, values_of, wait_until
 
 RATE = 8 / SLOWNESS  # times real time; every scan must still be used, and that is checked
 
@@ -46,11 +46,7 @@ class LocalizationBagTest(unittest.TestCase):
 
     @classmethod
     def values(cls, node):
-        for array in reversed(cls.diagnostics.messages):
-            for status in array.status:
-                if status.name.startswith(node + ":"):
-                    return {v.key: v.value for v in status.values}
-        return {}
+        return values_of(newest_status(cls.diagnostics, lambda name: name.startswith(node + ":")))
 
     @classmethod
     def value(cls, node, key):

@@ -3,7 +3,6 @@
 request that cannot be met is refused with a reason and changes nothing."""
 import math
 import sys
-import unittest
 
 import rospy
 import rostest
@@ -14,7 +13,7 @@ from rosgraph_msgs.msg import Log
 from std_srvs.srv import Empty
 
 sys.dont_write_bytecode = True
-from localization_rig import WAIT, Listener, Recording, Rig, make_map, planar, wait_until
+from localization_rig import WAIT, Listener, Rig, RigCase, make_map, planar, wait_until
 
 NAN = float("nan")
 
@@ -26,16 +25,7 @@ def turned(grid, yaw):
     return make_map(grid.data, grid.info.width, grid.info.height, grid.info.resolution, c * x - s * y, s * x + c * y, yaw)
 
 
-class LocalizationControlTest(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.run_ = Recording()
-
-    def rig(self, kind="Localization", **params):
-        rig = Rig(self._testMethodName, self.run_, kind, **params)
-        self.addCleanup(rig.close)
-        return rig
-
+class LocalizationControlTest(RigCase):
     def started(self, scans=40, **params):
         """A rig with its map and a few scans, that nobody told where the robot is."""
         rig = self.rig(**params)

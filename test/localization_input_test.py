@@ -4,7 +4,6 @@ alive, and goes on as soon as it can. Nothing is published on a guess."""
 import copy
 import math
 import sys
-import unittest
 
 import rospy
 import rostest
@@ -12,19 +11,14 @@ from rosgraph_msgs.msg import Log
 from tf2_msgs.msg import TFMessage
 
 sys.dont_write_bytecode = True
-from localization_rig import Recording, Rig, wait_until
+from localization_rig import Rig, RigCase, wait_until
 
 NAN, INF = float("nan"), float("inf")
 
 
-class LocalizationInputTest(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.run_ = Recording()
-
+class LocalizationInputTest(RigCase):
     def rig(self, kind="Localization", **params):
-        rig = Rig(self._testMethodName, self.run_, kind, **params)
-        self.addCleanup(rig.close)
+        rig = super().rig(kind, **params)
         self.assertTrue(rig.loaded)
         return rig
 

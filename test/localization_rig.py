@@ -3,12 +3,14 @@ nodelets answer. No test; the localization_*_test.py files import it."""
 import copy
 import math
 import os
+import pathlib
 import random
 import select
-import socket
 import subprocess
+import sys
 import tempfile
 import time
+import unittest
 import xmlrpc.client
 
 import rosbag
@@ -26,34 +28,25 @@ from sensor_msgs.msg import LaserScan
 from std_srvs.srv import SetBool
 from tf2_msgs.msg import TFMessage
 
+sys.path.insert(0, str(pathlib.Path(os.path.realpath(__file__)).parent.parent / "scripts"))
+
+from free_port import free_port  # noqa: E402, F401 (for the tests)
+from planar import compose, inverse, planar  # noqa: E402, F401 (for the tests)
+
 SLOWNESS = float(os.environ.get("HYSELAM_SLOWNESS", "1"))  # of an instrumented build: bags are played so much slower
 WAIT = 90.0 * SLOWNESS  # [s] of wall time; never reached when all is well
-
-
-def planar(pose):
-    return pose.position.x, pose.position.y, 2 * math.atan2(pose.orientation.z, pose.orientation.w)
 
 
 def angle_between(a, b):
     return abs(math.remainder(a - b, 2 * math.pi))
 
 
-def compose(a, b):
-    c, s = math.cos(a[2]), math.sin(a[2])
-    return a[0] + c * b[0] - s * b[1], a[1] + s * b[0] + c * b[1], a[2] + b[2]
-
-
-def inverse(a):
-    c, s = math.cos(a[2]), math.sin(a[2])
-    return -c * a[0] - s * a[1], s * a[0] - c * a[1], -a[2]
-
-
-def wait_until(condition, what):
-    deadline = time.monotonic() + WAIT
+def wait_until(condition, what, patience=WAIT, pause=0.01):
+    deadline = time.monotonic() + patience
     while not condition():
         if time.monotonic() > deadline or rospy.is_shutdown():
-            raise AssertionError(f"not within {WAIT:.0f} s: {what() if callable(what) else what}")
-        time.sleep(0.01)
+            raise AssertionError(f"not within {patience:.0f} s: {what() if callable(what) else what}")
+        time.sleep(pause)
 
 
 def delivered(manager="/manager"):
@@ -62,6 +55,15 @@ def delivered(manager="/manager"):
     time.sleep(0.05)  # rospy hands messages to threads of their own
     for _ in range(5):
         rospy.ServiceProxy(f"{manager}/list", NodeletList)()
+
+
+def load_nodelet(kind, node, topics):
+    """Into `manager`, with other topics than its own; whether it is loaded."""
+    rospy.wait_for_service("/manager/load_nodelet", WAIT)
+    try:
+        return rospy.ServiceProxy("/manager/load_nodelet", NodeletLoad)(node, kind, list(topics), list(topics.values()), [], "").success
+    except rospy.ServiceException:
+        return False
 
 
 def forget_dead(node):
@@ -93,18 +95,6 @@ def play_bag(path, rate, topics):
         player.wait()
 
 
-def free_port():
-    """One that nobody listens on now, and that the system gives to nobody who does not ask for it."""
-    while True:
-        with socket.socket() as s:
-            port = random.randrange(20000, 32768)
-            try:
-                s.bind(("localhost", port))
-            except OSError:
-                continue
-        return port
-
-
 class Recording:
     """A run through a shipped plan: its bag and map as files and as messages."""
 
@@ -125,18 +115,7 @@ class Recording:
                     self.static += msg.transforms
                 elif topic == "/ground_truth":
                     self.truth.append((msg.header.stamp.to_sec(), planar(msg.pose.pose)))
-        self.map = self.read_map()
-
-    def read_map(self):
-        """The PGM and YAML that `simulate` writes, as a map server would publish them."""
-        keys = dict(line.split(": ", 1) for line in open(self.yaml).read().splitlines() if ": " in line)
-        with open(os.path.join(self.folder.name, keys["image"].strip()), "rb") as file:
-            words = file.read().split(maxsplit=4)
-        width, height, pixels = int(words[1]), int(words[2]), words[4]
-        x, y, _ = (float(v) for v in keys["origin"].strip("[] ").split(","))
-        value = {254: 0, 0: 100}
-        rows = [[value.get(p, -1) for p in pixels[r * width:(r + 1) * width]] for r in range(height)]
-        return make_map([v for row in reversed(rows) for v in row], width, height, float(keys["resolution"]), x, y)
+        self.map = read_map(self.yaml)
 
     def truth_at(self, stamp):
         return min(self.truth, key=lambda entry: abs(entry[0] - stamp))[1]
@@ -164,6 +143,18 @@ def make_map(cells, width, height, resolution, x=0.0, y=0.0, yaw=0.0, frame="map
     return grid
 
 
+def read_map(yaml):
+    """The PGM and YAML that programs of hyselam_sim write, as a map server would publish them."""
+    keys = dict(line.split(": ", 1) for line in open(yaml).read().splitlines() if ": " in line)
+    with open(os.path.join(os.path.dirname(yaml), keys["image"].strip()), "rb") as file:
+        words = file.read().split(maxsplit=4)
+    width, height, pixels = int(words[1]), int(words[2]), words[4]
+    x, y, _ = (float(v) for v in keys["origin"].strip("[] ").split(","))
+    value = {254: 0, 0: 100}
+    rows = [[value.get(p, -1) for p in pixels[r * width:(r + 1) * width]] for r in range(height)]
+    return make_map([v for row in reversed(rows) for v in row], width, height, float(keys["resolution"]), x, y)
+
+
 class Listener:
     """Keeps what comes on a topic."""
 
@@ -188,6 +179,20 @@ class Listener:
         self.subscriber.unregister()
 
 
+def newest_status(listener, is_wanted):
+    """Of those whose name is wanted, in the diagnostics that came; None: there was none."""
+    for array in reversed(listener.messages):
+        for status in array.status:
+            if is_wanted(status.name):
+                return status
+    return None
+
+
+def values_of(status):
+    """By key; empty for None."""
+    return {v.key: v.value for v in status.values} if status else {}
+
+
 def take_in(listeners):
     """Returns when what has come to this process is among the messages: each topic has a connection and a thread of its own."""
     quiet = [0]
@@ -198,25 +203,44 @@ def take_in(listeners):
     wait_until(taken, "messages are not taken in")
 
 
-class Rig:
+class LogReader:
+    """Reads what nodes log: one connection for all rigs."""
+    log = None  # /rosout_agg
+
+    def read_log(self):
+        """From now on."""
+        if LogReader.log is None:
+            LogReader.log = Listener("/rosout_agg", Log)
+            wait_until(lambda: LogReader.log.subscriber.get_num_connections() > 0, "no connection to /rosout_agg")
+        self.logged_before = len(LogReader.log.messages)
+
+    def said(self, *words, level=None):
+        """Whether one log message since the rig began holds all the words."""
+        return any(all(w in m.msg for w in words) and (level is None or m.level == level)
+                   for m in LogReader.log.messages[self.logged_before:])
+
+    def wait_said(self, *words, level=None):
+        wait_until(lambda: self.said(*words, level=level),
+                   lambda: f"{words}; said: {[m.msg for m in LogReader.log.messages[self.logged_before:]]}")
+
+
+class Rig(LogReader):
     """One nodelet in the manager `manager`, in a namespace of its own, fed by hand.
 
     Simulated time is what the rig says. The frames of all rigs are the same; so only one rig lives at a time.
     """
-    log = None  # /rosout_agg of all rigs
+    clock = None
 
     def __init__(self, name, recording, kind="Localization", **params):
-        if Rig.log is None:
-            Rig.log = Listener("/rosout_agg", Log)
+        if Rig.clock is None:
             Rig.clock = rospy.Publisher("/clock", Clock, queue_size=1000)
             Rig.tf = rospy.Publisher("/tf", TFMessage, queue_size=10000)
             Rig.tf_static = rospy.Publisher("/tf_static", TFMessage, queue_size=10, latch=True)
-            wait_until(lambda: Rig.log.subscriber.get_num_connections() > 0, "no connection to /rosout_agg")
+        self.read_log()
         self.name, self.recording = name, recording
         self.node = f"/{name}/{kind.lower()}"
         self.next = 0  # scan to feed
         self.sent = 0  # scans published
-        self.logged_before = len(Rig.log.messages)
         self.set_clock(recording.scans[0].header.stamp.to_sec() - 0.5)
         Rig.tf_static.publish(TFMessage(recording.static))
         params.setdefault("diagnostic_period", 0.05)
@@ -260,12 +284,7 @@ class Rig:
     def load(self, kind):
         # A topic for each rig: one that another nodelet of the same process gave up a moment ago is at times not
         # connected again.
-        rospy.wait_for_service("/manager/load_nodelet", WAIT)
-        try:
-            return rospy.ServiceProxy("/manager/load_nodelet", NodeletLoad)(
-                self.node, "fsd_localization/" + kind, ["/diagnostics"], [f"/{self.name}/diagnostics"], [], "").success
-        except rospy.ServiceException:
-            return False
+        return load_nodelet("fsd_localization/" + kind, self.node, {"/diagnostics": f"/{self.name}/diagnostics"})
 
     def close(self):
         if self.loaded:
@@ -348,11 +367,7 @@ class Rig:
     # What comes out.
 
     def diagnosis(self):
-        for array in reversed(self.diagnostics_seen.messages):
-            for status in array.status:
-                if status.name.startswith(self.node[1:] + ":"):
-                    return status
-        return None
+        return newest_status(self.diagnostics_seen, lambda name: name.startswith(self.node[1:] + ":"))
 
     def fresh_diagnosis(self):
         """One that was filled after this call."""
@@ -361,23 +376,13 @@ class Rig:
         return self.diagnosis()
 
     def values(self):
-        status = self.diagnosis()
-        return {v.key: v.value for v in status.values} if status else {}
+        return values_of(self.diagnosis())
 
     def value(self, key):
         return self.values().get(key)
 
     def wait_value(self, key, value):
         wait_until(lambda: self.value(key) == str(value), lambda: f"{key} = {value}, it is {self.value(key)}")
-
-    def said(self, *words, level=None):
-        """Whether one log message since the rig began holds all the words."""
-        return any(all(w in m.msg for w in words) and (level is None or m.level == level)
-                   for m in Rig.log.messages[self.logged_before:])
-
-    def wait_said(self, *words, level=None):
-        wait_until(lambda: self.said(*words, level=level),
-                   lambda: f"{words}; said: {[m.msg for m in Rig.log.messages[self.logged_before:]]}")
 
     def odom_in_map(self):
         """Everything that tf was told about map -> odom, as (stamp, pose)."""
@@ -392,3 +397,16 @@ class Rig:
         x, y, theta = planar(pose.pose.pose)
         tx, ty, ttheta = truth or self.recording.truth_at(pose.header.stamp.to_sec())
         return math.hypot(x - tx, y - ty), math.degrees(angle_between(theta, ttheta))
+
+
+class RigCase(unittest.TestCase):
+    """A test whose rigs are fed with one recording."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.run_ = Recording()
+
+    def rig(self, kind="Localization", **params):
+        rig = Rig(self._testMethodName, self.run_, kind, **params)
+        self.addCleanup(rig.close)
+        return rig

@@ -11,7 +11,7 @@ import xml.etree.ElementTree as ElementTree
 import rosbag
 import rospy
 import rostest
-from diagnostic_msgs.msg import DiagnosticArray
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from hyselam_msgs.msg import ObjectMap
 from hyselam_msgs.srv import ObjectMapPath, QueryObjects
 from nodelet.srv import NodeletLoad
@@ -19,7 +19,7 @@ from sensor_msgs.msg import CameraInfo, Image
 from tf2_msgs.msg import TFMessage
 
 sys.dont_write_bytecode = True
-from localization_rig import Listener, WAIT, wait_until
+from localization_rig import Listener, WAIT, newest_status, values_of, wait_until
 
 HERE = os.path.dirname(os.path.realpath(__file__))
 CAMERA = "/camera"
@@ -95,15 +95,11 @@ class ObjectBagTest(unittest.TestCase):
 
     @classmethod
     def status(cls):
-        for array in reversed(cls.diagnostics.messages):
-            for status in array.status:
-                if status.name.endswith(": objects"):
-                    return status
-        return type("Nothing", (), {"name": "", "message": "", "values": []})
+        return newest_status(cls.diagnostics, lambda name: name.endswith(": objects")) or DiagnosticStatus()
 
     @classmethod
     def number(cls, key):
-        return int({v.key: v.value for v in cls.status().values}.get(key, -1))
+        return int(values_of(cls.status()).get(key, -1))
 
     def objects(self, path):
         return {each.get("id"): each for each in ElementTree.parse(path).getroot().findall("o:object", NAMES)}

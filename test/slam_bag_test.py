@@ -19,7 +19,7 @@ from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import MarkerArray
 
 sys.dont_write_bytecode = True
-from localization_rig import SLOWNESS, WAIT, Listener, Recording, planar, play_bag, wait_until
+from localization_rig import SLOWNESS, WAIT, Listener, Recording, newest_status, planar, play_bag, values_of, wait_until
 
 RATE = 12 / SLOWNESS  # times real time; every scan must still be used, and that is checked
 
@@ -64,11 +64,7 @@ class SlamBagTest(unittest.TestCase):
 
     @classmethod
     def values(cls):
-        for array in reversed(cls.heard["diagnostics"].messages):
-            for status in array.status:
-                if status.name == "slam: SLAM":
-                    return {v.key: v.value for v in status.values}
-        return {}
+        return values_of(newest_status(cls.heard["diagnostics"], lambda name: name == "slam: SLAM"))
 
     @classmethod
     def rests(cls):

@@ -13,13 +13,12 @@ import rospy
 import rostest
 from hyselam_msgs.srv import StatePath
 from nav_msgs.msg import OccupancyGrid
-from nodelet.srv import NodeletLoad
 from roslib.packages import find_node
 from rosgraph_msgs.msg import Log
 from std_srvs.srv import Trigger
 
 sys.dont_write_bytecode = True
-from localization_rig import WAIT, Listener, Recording, Rig, angle_between, compose, forget_dead, inverse, wait_until
+from localization_rig import WAIT, Listener, Recording, Rig, angle_between, compose, forget_dead, inverse, load_nodelet, wait_until
 
 
 class SlamRig(Rig):
@@ -38,12 +37,7 @@ class SlamRig(Rig):
         if self.process_wanted:
             self.start()
             return True
-        rospy.wait_for_service("/manager/load_nodelet", WAIT)
-        try:
-            return rospy.ServiceProxy("/manager/load_nodelet", NodeletLoad)(
-                self.node, "ngram_slam/NgramSlam", ["/diagnostics"], [f"/{self.name}/diagnostics"], [], "").success
-        except rospy.ServiceException:
-            return False
+        return load_nodelet("ngram_slam/NgramSlam", self.node, {"/diagnostics": f"/{self.name}/diagnostics"})
 
     def start(self):
         program = find_node("ngram_slam", "slam_node")[0]

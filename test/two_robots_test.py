@@ -25,7 +25,7 @@ from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import MarkerArray
 
 sys.dont_write_bytecode = True
-from localization_rig import SLOWNESS, WAIT, Listener, Recording, compose, inverse, wait_until
+from localization_rig import SLOWNESS, WAIT, Listener, Recording, compose, inverse, newest_status, values_of, wait_until
 
 PATIENCE = 180.0 * SLOWNESS  # [s] for a merging
 
@@ -35,11 +35,7 @@ def planar_transform(t):
 
 
 def await_long(condition, what):
-    deadline = time.monotonic() + PATIENCE
-    while not condition():
-        if time.monotonic() > deadline or rospy.is_shutdown():
-            raise AssertionError(f"not within {PATIENCE:.0f} s: {what()}")
-        time.sleep(0.1)
+    wait_until(condition, what, PATIENCE, 0.1)
 
 
 class Robot:
@@ -124,11 +120,7 @@ class TwoRobotsTest(unittest.TestCase):
 
     @classmethod
     def values(cls, name):
-        for array in reversed(cls.heard["diagnostics"].messages[-200:]):
-            for status in array.status:
-                if status.name == name:
-                    return {v.key: v.value for v in status.values}
-        return {}
+        return values_of(newest_status(cls.heard["diagnostics"], lambda each: each == name))
 
     def settle(self, robots):
         """Every scan sent is used, or waits for nothing."""

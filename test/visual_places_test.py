@@ -15,14 +15,14 @@ import rostest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import PoseWithCovarianceStamped, TransformStamped
 from hyselam_msgs.msg import AugmentedTopologicalMap, LocalizationStatus, Place, PlaceEdge, PlaceState, PlaceWord, VisualPlace
-from nodelet.srv import NodeletList, NodeletLoad, NodeletUnload
+from nodelet.srv import NodeletList, NodeletUnload
 from sensor_msgs.msg import CompressedImage, Image, LaserScan
 from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import MarkerArray
 
-from localization_rig import Listener, delivered, wait_until, WAIT
+from localization_rig import Listener, delivered, load_nodelet, newest_status, values_of, wait_until
 
 COLOR = "/camera/color/image_raw"
 ROOMS = {"left room": (1, 2.0), "right room": (2, 6.0)}  # id, x of the middle; the wall is at x = 4
@@ -160,12 +160,7 @@ class Rig:
         self.initialpose = Listener(f"/{name}/initialpose", PoseWithCovarianceStamped)
         self.markers = Listener(f"/{name}/place_markers", MarkerArray)
         self.diagnostics = Listener(f"/{name}/diagnostics", DiagnosticArray)
-        rospy.wait_for_service("/manager/load_nodelet", WAIT)
-        try:
-            self.loaded = rospy.ServiceProxy("/manager/load_nodelet", NodeletLoad)(
-                self.node, "selovis/SemanticLocalization", ["/diagnostics"], [f"/{name}/diagnostics"], [], "").success
-        except rospy.ServiceException:
-            self.loaded = False
+        self.loaded = load_nodelet("selovis/SemanticLocalization", self.node, {"/diagnostics": f"/{name}/diagnostics"})
         if self.loaded:
             outputs = (self.seen, self.kidnapped, self.initialpose, self.diagnostics, self.markers)
             wait_until(lambda: all(p.get_num_connections() > 0 for p in (self.image, self.map, self.place, self.tf, self.localization))
@@ -195,15 +190,10 @@ class Rig:
         self.map.publish(msg)
 
     def status(self):
-        for array in reversed(self.diagnostics.messages):
-            for status in array.status:
-                if status.name == self.node[1:] + ": visual places":
-                    return status
-        return None
+        return newest_status(self.diagnostics, lambda name: name == self.node[1:] + ": visual places")
 
     def values(self):
-        status = self.status()
-        return {v.key: v.value for v in status.values} if status else {}
+        return values_of(self.status())
 
     def number(self, key):
         return int(self.values().get(key, "-1"))

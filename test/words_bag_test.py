@@ -15,7 +15,7 @@ from std_srvs.srv import Trigger
 from visualization_msgs.msg import MarkerArray
 
 sys.dont_write_bytecode = True
-from localization_rig import SLOWNESS, WAIT, Listener, Recording, play_bag, wait_until
+from localization_rig import SLOWNESS, WAIT, Listener, Recording, newest_status, play_bag, values_of, wait_until
 
 RATE = 8 / SLOWNESS  # times real time; every scan must still be used, and that is checked
 PLACES = ("fsd", "scan", "node")
@@ -61,11 +61,7 @@ class WordsBagTest(unittest.TestCase):
 
     @classmethod
     def values(cls, node):
-        for array in reversed(cls.diagnostics.messages):
-            for status in array.status:
-                if status.name.startswith(node + ":"):
-                    return {v.key: v.value for v in status.values}
-        return {}
+        return values_of(newest_status(cls.diagnostics, lambda name: name.startswith(node + ":")))
 
     @classmethod
     def items(cls, ns, topic, field):

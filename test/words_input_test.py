@@ -13,12 +13,12 @@ import rostest
 from diagnostic_msgs.msg import DiagnosticArray
 from hyselam_msgs.msg import FsdObservation, SemanticRegionArray, WordArray, WordMatchArray
 from hyselam_msgs.srv import CorpusPath
-from nodelet.srv import NodeletList, NodeletLoad, NodeletUnload
+from nodelet.srv import NodeletList, NodeletUnload
 from rosgraph_msgs.msg import Log
 from std_srvs.srv import Trigger
 
 sys.dont_write_bytecode = True
-from localization_rig import WAIT, Listener, take_in, wait_until
+from localization_rig import WAIT, Listener, LogReader, load_nodelet, newest_status, take_in, values_of, wait_until
 
 NAN = float("nan")
 # Density, length [0.1 m] and turn of the stretches of a circuit.
@@ -27,16 +27,12 @@ CIRCUIT = [(0.31, 60, 0), (0.56, 25, 1.57), (0.31, 40, 0), (0.44, 20, 0), (0.31,
 LAP = sum(length for _, length, _ in CIRCUIT)
 
 
-class Rig:
+class Rig(LogReader):
     """One Words nodelet in a namespace of its own, fed by hand."""
-    log = None  # /rosout_agg of all rigs
 
     def __init__(self, name, **params):
-        if Rig.log is None:
-            Rig.log = Listener("/rosout_agg", Log)
-            wait_until(lambda: Rig.log.subscriber.get_num_connections() > 0, "no connection to /rosout_agg")
+        self.read_log()
         self.name, self.node = name, f"/{name}/words"
-        self.logged_before = len(Rig.log.messages)
         self.pose, self.steps, self.sent = (0.0, 0.0, 0.0), 0, 0
         self.stamp = 100.0
         settings = dict(levels=2, min_n=[5, 8], diagnostic_period=0.05, save_period=0.0)
@@ -55,12 +51,7 @@ class Rig:
                        and self.matches.subscriber.get_num_connections() > 0, "the nodelet does not listen")
 
     def load(self):
-        rospy.wait_for_service("/manager/load_nodelet", WAIT)
-        try:
-            return rospy.ServiceProxy("/manager/load_nodelet", NodeletLoad)(
-                self.node, "ngram_slam/Words", ["/diagnostics"], [f"/{self.name}/diagnostics"], [], "").success
-        except rospy.ServiceException:
-            return False
+        return load_nodelet("ngram_slam/Words", self.node, {"/diagnostics": f"/{self.name}/diagnostics"})
 
     def unload(self):
         if self.loaded:
@@ -110,11 +101,8 @@ class Rig:
         take_in([self.words, self.matches, self.regions])
 
     def values(self):
-        for array in reversed(self.diagnostics.messages):
-            for status in array.status:
-                if status.name.startswith(self.node[1:] + ":"):
-                    return dict({v.key: v.value for v in status.values}, level=status.level, message=status.message)
-        return {}
+        status = newest_status(self.diagnostics, lambda name: name.startswith(self.node[1:] + ":"))
+        return dict(values_of(status), level=status.level, message=status.message) if status else {}
 
     def value(self, key):
         return self.values().get(key)
@@ -122,14 +110,6 @@ class Rig:
     def call(self, service, kind, *args):
         rospy.wait_for_service(f"{self.node}/{service}", WAIT)
         return rospy.ServiceProxy(f"{self.node}/{service}", kind)(*args)
-
-    def said(self, *words, level=None):
-        return any(all(w in m.msg for w in words) and (level is None or m.level == level)
-                   for m in Rig.log.messages[self.logged_before:])
-
-    def wait_said(self, *words, level=None):
-        wait_until(lambda: self.said(*words, level=level),
-                   lambda: f"{words}; said: {[m.msg for m in Rig.log.messages[self.logged_before:]]}")
 
     def all(self, listener, field):
         return [item for message in listener.messages for item in getattr(message, field)]

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "../test/look.hpp"
 #include "../test/random_worlds.hpp"
 #include "../test/transcription/himm.hpp"
 #include "buildings.hpp"
@@ -29,15 +30,7 @@ const std::vector<std::pair<hyselam::LaserScan, Pose2>>& drive() {
     std::vector<std::pair<hyselam::LaserScan, Pose2>> out;
     for (int i = 0; i < 100; ++i) {
       const Pose2 pose{3.0 + 0.1 * i, 1.5, 0.3 * std::sin(0.1 * i)};
-      hyselam::LaserScan s;
-      s.angle_min = -hyselam::kPi / 2;
-      s.angle_increment = hyselam::kPi / 180;
-      s.range_max = 30.0;
-      for (int b = 0; b < 181; ++b) {
-        s.ranges.push_back(static_cast<float>(
-            rays.range(pose.x, pose.y, pose.theta + s.angle_min + b * s.angle_increment, 30.0)));
-      }
-      out.push_back({s, pose});
+      out.push_back({look(rays, pose, 0.0), pose});
     }
     return out;
   }();

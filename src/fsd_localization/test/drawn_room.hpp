@@ -2,9 +2,8 @@
 #pragma once
 
 #include "fsd_localization/models/grid_ray_caster.hpp"
-#include "hyselam_common/laser_scan.hpp"
-#include "hyselam_common/pose2.hpp"
 #include "hyselam_common/testing/drawn_grid.hpp"
+#include "look.hpp"
 #include "random_worlds.hpp"
 
 inline hyselam::OccupancyGrid gridOf(const transcription::Cells& cells) {
@@ -31,18 +30,4 @@ inline hyselam::OccupancyGrid room() {
                                       "#...#.#",  //
                                       "#######"},
                                      0.1, {3, 27, 10, 30, 5, 42, 3}, {3, 17, 10, 20, 27, 3});
-}
-
-inline hyselam::LaserScan look(const fsd_localization::GridRayCaster& rays,
-                               const hyselam::Pose2& at, double stamp) {
-  hyselam::LaserScan s;
-  s.stamp = stamp;
-  s.angle_min = -hyselam::kPi / 2;
-  s.angle_increment = hyselam::kPi / 180;
-  s.range_max = 30.0;
-  for (int b = 0; b < 181; ++b) {
-    s.ranges.push_back(static_cast<float>(
-        rays.range(at.x, at.y, at.theta + s.angle_min + b * s.angle_increment, 30.0)));
-  }
-  return s;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "drawn_room.hpp"
+#include "driven_robot.hpp"
 #include "fsd_localization/filter/inlier_monitor.hpp"
 #include "fsd_localization/localizer.hpp"
 #include "fsd_localization/search/alarm_watch.hpp"
@@ -182,46 +183,35 @@ TEST(PlaceJudge, aBeatenPoseIsToldHowHopelessItIsAndStaysAHypothesis) {
 }
 
 TEST(Localizer, aRobotThatIsCarriedOffAndOnlyTurnsIsFound) {
-  const auto map = room();
-  const GridRayCaster rays(map);
-  Localizer localizer(map, LocalizerParams{});
-  localizer.setInitialPose({2.0, 2.0, 0.0}, {0.2, 0.2, 0.1});
-  Pose2 at{2.0, 2.0, 0.0}, wheels = at;
+  DrivenRobot robot;
   std::optional<LocalizationResult> last;
   for (int i = 0; i < 300; ++i) {
-    const Pose2 step = i < 150 ? Pose2{0.02, 0.0, 0.02} : Pose2{0.0, 0.0, 0.05};
-    at = at * step;
-    wheels = wheels * step;
-    if (i == 150) at = {9.0, 5.0, -2.0};
-    if (const auto r = localizer.update(look(rays, at, 0.1 * i), wheels)) last = r;
+    robot.drive(i < 150 ? Pose2{0.02, 0.0, 0.02} : Pose2{0.0, 0.0, 0.05});
+    if (i == 150) robot.carryOff();
+    if (const auto r = robot.see(0.1 * i)) last = r;
   }
   ASSERT_TRUE(last);
   EXPECT_TRUE(last->converged);
-  EXPECT_LT(distance(last->base_in_map, at), 0.2);
+  EXPECT_LT(distance(last->base_in_map, robot.at), 0.2);
 }
 
 // The answer that gives up the old pose is sure enough of another one: no update is lost between.
 TEST(Localizer, isFoundByTheAnswerThatSaysItWasCarriedOff) {
-  const auto map = room();
-  const GridRayCaster rays(map);
-  Localizer localizer(map, LocalizerParams{});
-  localizer.setInitialPose({2.0, 2.0, 0.0}, {0.2, 0.2, 0.1});
-  Pose2 at{2.0, 2.0, 0.0}, wheels = at;
+  DrivenRobot robot;
   int lost = 0, wrong = 0;
   bool found = false;
   std::optional<LocalizationResult> last;
   for (int i = 0; i < 40; ++i) {  // half a metre between scans
-    const Pose2 step{0.5, 0.0, 0.5};
-    at = at * step;
-    wheels = wheels * step;
-    if (i == 25) at = {9.0, 5.0, -2.0};
-    last = localizer.update(look(rays, at, 1.0 * i), wheels);
+    robot.drive({0.5, 0.0, 0.5});
+    if (i == 25) robot.carryOff();
+    last = robot.see(1.0 * i);
     ASSERT_TRUE(last);
     lost += last->phase == Phase::kLost;
-    const bool is_wrong = distance(last->base_in_map, at) > 0.5;
+    const bool is_wrong = distance(last->base_in_map, robot.at) > 0.5;
     if (i >= 25 && wrong > 0 && !is_wrong && !found) {
       found = true;
-      EXPECT_TRUE(localizer.shortTermPoints(last->base_in_map).empty()) << "seen from the old pose";
+      EXPECT_TRUE(robot.localizer.shortTermPoints(last->base_in_map).empty())
+          << "seen from the old pose";
     }
     wrong += is_wrong;
   }
@@ -229,7 +219,7 @@ TEST(Localizer, isFoundByTheAnswerThatSaysItWasCarriedOff) {
   EXPECT_GT(wrong, 0) << "the jump was seen";
   EXPECT_EQ(lost, 0);
   EXPECT_TRUE(last->converged);
-  EXPECT_LT(distance(last->base_in_map, at), 0.2);
+  EXPECT_LT(distance(last->base_in_map, robot.at), 0.2);
 }
 
 namespace {

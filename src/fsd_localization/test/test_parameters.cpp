@@ -14,7 +14,7 @@ using hyselam::ParamLoader;
 namespace {
 
 std::string written(const std::string& file) {
-  return hyselam::readTextFile(std::string(FSD_LOCALIZATION_SOURCE_DIR) + "/" + file);
+  return hyselam::readTextFile(std::string(HYSELAM_PACKAGE_DIR) + "/" + file);
 }
 
 struct Entry {

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "drawn_room.hpp"
+#include "driven_robot.hpp"
 #include "fsd_localization/localizer.hpp"
 
 using namespace fsd_localization;  // NOLINT: a test, not a header
@@ -324,28 +325,22 @@ TEST(Localizer, oneOddScanRaisesNoDoubt) {
 }
 
 TEST(Localizer, whatWasSeenBeforeItWasCarriedOffDoesNotMislead) {
-  const auto map = room();
-  const GridRayCaster rays(map);
-  Localizer localizer(map, LocalizerParams{});
-  localizer.setInitialPose({2.0, 2.0, 0.0}, {0.2, 0.2, 0.1});
-  Pose2 at{2.0, 2.0, 0.0}, wheels = at;
+  DrivenRobot robot;
   double wrong = 0.0;
   std::optional<LocalizationResult> last;
   for (int i = 0; i < 400; ++i) {
-    const Pose2 step{0.02, 0.0, 0.02};  // a circle of 1 m, in 6.3 m
-    at = at * step;
-    wheels = wheels * step;
-    if (i == 315) at = {9.0, 5.0, -2.0};
-    const auto result = localizer.update(look(rays, at, 0.1 * i), wheels);
+    robot.drive({0.02, 0.0, 0.02});  // a circle of 1 m, in 6.3 m
+    if (i == 315) robot.carryOff();
+    const auto result = robot.see(0.1 * i);
     if (!result) continue;
-    if (i >= 315 && result->converged && distance(result->base_in_map, at) > 0.5) {
+    if (i >= 315 && result->converged && distance(result->base_in_map, robot.at) > 0.5) {
       wrong += result->travelled - last->travelled;
     }
     last = result;
   }
   EXPECT_LT(wrong, 0.3) << "sure of a wrong pose for so many metres";
   EXPECT_TRUE(last->converged);
-  EXPECT_LT(distance(last->base_in_map, at), 0.2);
+  EXPECT_LT(distance(last->base_in_map, robot.at), 0.2);
 }
 
 TEST(Localizer, keepsItsPoseOnCellsThatTheMapDoesNotKnow) {

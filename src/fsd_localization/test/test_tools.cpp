@@ -1,6 +1,5 @@
 // The tools as a shell sees them: exit status, one line of error, results as JSON.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -12,8 +11,10 @@
 #include "hyselam_common/ros/bag_io.hpp"
 #include "hyselam_common/testing/drawn_grid.hpp"
 #include "hyselam_common/testing/files.hpp"
+#include "hyselam_common/testing/program_run.hpp"
 #include "hyselam_common/trajectory_io.hpp"
 #include "localization_score.hpp"
+#include "look.hpp"
 
 namespace {
 
@@ -37,16 +38,8 @@ hyselam::RobotLog drive() {
   const fsd_localization::GridRayCaster rays(room());
   for (int i = 0; i < 30; ++i) {
     const Pose2 at{1.0 + 0.1 * i, 2.5, 0.0};
-    hyselam::LaserScan s;
-    s.stamp = 1.0 + 0.2 * i;
-    s.angle_min = -hyselam::kPi / 2;
-    s.angle_increment = hyselam::kPi / 180;
+    hyselam::LaserScan s = look(rays, at, 1.0 + 0.2 * i, 20.0);
     s.range_min = 0.05;
-    s.range_max = 20.0;
-    for (int b = 0; b < 181; ++b) {
-      s.ranges.push_back(static_cast<float>(
-          rays.range(at.x, at.y, s.angle_min + b * s.angle_increment, s.range_max)));
-    }
     log.scans.push_back(s);
     log.odometry.push_back({s.stamp, {0.1 * i, 0.0, 0.0}});
     log.ground_truth.push_back({s.stamp, at});
@@ -61,23 +54,18 @@ class Tools : public ::testing::Test {
     hyselam::writeBag(d / "r.bag", drive());
   }
   int run(const std::string& command) {
-    const int status = std::system((std::string(FSD_LOCALIZATION_TOOLS) + "/" + command + " >" +
-                                    d / "stdout" + " 2>" + d / "stderr")
-                                       .c_str());
-    errors = fileBytes(d / "stderr");
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    const auto done = hyselam::testing::runProgram(std::string(HYSELAM_TOOLS) + "/" + command, d);
+    errors = done.errors;
+    return done.status;
   }
   int localize(const std::string& options) {
     return run("localize_offline --map " + d / "m.yaml --bag " + d / "r.bag --particles 2000 " +
                options);
   }
   int field(const std::string& options) { return run("fsd_field " + d / "m.yaml " + options); }
-  /// Exit status 2 and exactly one line "error: ...".
+  /// Of the program that ran last.
   void expectRefused(int status, const std::string& part) {
-    EXPECT_EQ(status, 2) << errors;
-    EXPECT_EQ(errors.rfind("error: ", 0), 0U) << errors;
-    EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 1) << errors;
-    EXPECT_NE(errors.find(part), std::string::npos) << errors;
+    EXPECT_TRUE(hyselam::testing::refused({status, "", errors}, part));
   }
 
   TemporaryDirectory d;

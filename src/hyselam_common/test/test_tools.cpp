@@ -1,7 +1,6 @@
 // The programs as people call them: exit status, one line of error, results as JSON.
 #include <gtest/gtest.h>
 #include <rosbag/bag.h>
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -12,37 +11,20 @@
 #include "hyselam_common/ros/bag_io.hpp"
 #include "hyselam_common/ros/conversions.hpp"
 #include "hyselam_common/testing/files.hpp"
+#include "hyselam_common/testing/program_run.hpp"
 #include "hyselam_common/tool.hpp"
 
 namespace hyselam {
 namespace {
 
 using testing::fileBytes;
+using testing::ProgramRun;
+using testing::refused;
 using testing::TemporaryDirectory;
 using testing::writeFile;
 
-struct Result {
-  int status = -1;
-  std::string errors;
-};
-
-Result run(const TemporaryDirectory& d, const std::string& command) {
-  const std::string errors = d / "stderr";
-  const int status =
-      std::system((std::string(HYSELAM_TOOLS) + "/" + command + " >/dev/null 2>" + errors).c_str());
-  Result r{WIFEXITED(status) ? WEXITSTATUS(status) : -1, fileBytes(errors)};
-  std::remove(errors.c_str());
-  return r;
-}
-
-/// Exit status 2 and exactly one line "error: ...".
-::testing::AssertionResult refused(const Result& r, const std::string& part) {
-  const bool one_line =
-      r.errors.rfind("error: ", 0) == 0 && std::count(r.errors.begin(), r.errors.end(), '\n') == 1;
-  if (r.status == 2 && one_line && r.errors.find(part) != std::string::npos) {
-    return ::testing::AssertionSuccess();
-  }
-  return ::testing::AssertionFailure() << "status " << r.status << ", stderr '" << r.errors << "'";
+ProgramRun run(const std::string& command) {
+  return testing::runProgram(std::string(HYSELAM_TOOLS) + "/" + command);
 }
 
 std::string scanLine(double stamp, double x) {
@@ -61,8 +43,8 @@ class Tools : public ::testing::Test {
 };
 
 TEST_F(Tools, CarmenToBagConverts) {
-  const Result r = run(d, "carmen_to_bag " + d / "in.log" + " " +
-                              d / "out.bag --laser-frame front --json " + d / "out.json");
+  const ProgramRun r = run("carmen_to_bag " + d / "in.log" + " " +
+                           d / "out.bag --laser-frame front --json " + d / "out.json");
   ASSERT_EQ(r.status, 0) << r.errors;
   EXPECT_NE(r.errors.find("line 2: skipped"), std::string::npos);
   const auto json = nlohmann::json::parse(fileBytes(d / "out.json"));
@@ -75,15 +57,15 @@ TEST_F(Tools, CarmenToBagConverts) {
   EXPECT_EQ(readBag(d / "out.bag").scans.size(), 3U);
   const std::string first = fileBytes(d / "out.bag");
   EXPECT_NE(first.find("front"), std::string::npos);
-  run(d, "carmen_to_bag " + d / "in.log" + " " + d / "out.bag --laser-frame front");
+  run("carmen_to_bag " + d / "in.log" + " " + d / "out.bag --laser-frame front");
   EXPECT_TRUE(first == fileBytes(d / "out.bag"));
 }
 
 TEST_F(Tools, BuildMapMaps) {
-  ASSERT_EQ(run(d, "build_map " + d / "in.log" + " " +
-                       d / "map.yaml --poses odometry "
-                           "--resolution 0.1 --json " +
-                       d / "out.json")
+  ASSERT_EQ(run("build_map " + d / "in.log" + " " +
+                d / "map.yaml --poses odometry "
+                    "--resolution 0.1 --json " +
+                d / "out.json")
                 .status,
             0);
   const OccupancyGrid grid = loadMap(d / "map.yaml");
@@ -106,9 +88,8 @@ TEST_F(Tools, BagsMayNameTheirTopicsAndFramesOtherwise) {
   }
   const auto build = [&](const std::string& scans, const std::string& odometry,
                          const std::string& base) {
-    return run(d, "build_map " + (d / "in.bag") + " " + (d / "map.yaml") + " --poses odometry" +
-                      scans + odometry + base + " --odom-frame robot/odom --json " +
-                      (d / "out.json"));
+    return run("build_map " + (d / "in.bag") + " " + (d / "map.yaml") + " --poses odometry" +
+               scans + odometry + base + " --odom-frame robot/odom --json " + (d / "out.json"));
   };
   const std::string scans = " --scan-topic front", odometry = " --odom-topic wheels",
                     base = " --base-frame robot/base";
@@ -118,63 +99,63 @@ TEST_F(Tools, BagsMayNameTheirTopicsAndFramesOtherwise) {
   EXPECT_TRUE(refused(build(scans, odometry, ""),
                       "no transform leads to it from base_link; frames of the bag: laser robot"));
   EXPECT_TRUE(refused(build(scans, odometry, " --base-frame typo"), "from typo"));
-  const Result r = build(scans, odometry, base);
+  const ProgramRun r = build(scans, odometry, base);
   ASSERT_EQ(r.status, 0) << r.errors;
   EXPECT_EQ(nlohmann::json::parse(fileBytes(d / "out.json"))["scans"], 3);
 }
 
 TEST_F(Tools, HelpIsNoError) {
-  EXPECT_EQ(run(d, "carmen_to_bag --help").status, 0);
-  EXPECT_EQ(run(d, "build_map --help").status, 0);
+  EXPECT_EQ(run("carmen_to_bag --help").status, 0);
+  EXPECT_EQ(run("build_map --help").status, 0);
 }
 
 TEST_F(Tools, WrongUsageIsStatus2) {
-  EXPECT_TRUE(refused(run(d, "carmen_to_bag"), "IN"));
-  EXPECT_TRUE(refused(run(d, "carmen_to_bag a b --no-such-option"), "--no-such-option"));
-  EXPECT_TRUE(refused(run(d, "carmen_to_bag a b --clock sun"), "--clock"));
-  EXPECT_TRUE(refused(run(d, "build_map a b"), "--poses"));
-  EXPECT_TRUE(refused(run(d, "build_map a b --poses odometry --resolution x"), "--resolution"));
+  EXPECT_TRUE(refused(run("carmen_to_bag"), "IN"));
+  EXPECT_TRUE(refused(run("carmen_to_bag a b --no-such-option"), "--no-such-option"));
+  EXPECT_TRUE(refused(run("carmen_to_bag a b --clock sun"), "--clock"));
+  EXPECT_TRUE(refused(run("build_map a b"), "--poses"));
+  EXPECT_TRUE(refused(run("build_map a b --poses odometry --resolution x"), "--resolution"));
 }
 
 TEST_F(Tools, UnreadableInputIsStatus2) {
-  EXPECT_TRUE(refused(run(d, "carmen_to_bag " + d / "none.log " + d / "o.bag"), "none.log"));
+  EXPECT_TRUE(refused(run("carmen_to_bag " + d / "none.log " + d / "o.bag"), "none.log"));
   writeFile(d / "bad.log", "");
-  EXPECT_TRUE(refused(run(d, "carmen_to_bag " + d / "bad.log " + d / "o.bag"), "no usable scan"));
+  EXPECT_TRUE(refused(run("carmen_to_bag " + d / "bad.log " + d / "o.bag"), "no usable scan"));
   EXPECT_TRUE(
-      refused(run(d, "carmen_to_bag " + d / "in.log " + d / "o.bag --range-max -1"), "range_max"));
+      refused(run("carmen_to_bag " + d / "in.log " + d / "o.bag --range-max -1"), "range_max"));
   EXPECT_TRUE(
-      refused(run(d, "build_map " + d / "none.bag " + d / "o.yaml --poses odometry"), "none.bag"));
+      refused(run("build_map " + d / "none.bag " + d / "o.yaml --poses odometry"), "none.bag"));
   EXPECT_FALSE(std::filesystem::exists(d / "o.bag"));
 }
 
 TEST_F(Tools, UnwritableOutputIsStatus2) {
-  const Result r = run(d, "carmen_to_bag " + d / "in.log " + d / "none/o.bag");
+  const ProgramRun r = run("carmen_to_bag " + d / "in.log " + d / "none/o.bag");
   EXPECT_EQ(r.status, 2);
   EXPECT_NE(r.errors.find("\nerror: "), std::string::npos);  // after the warning of line 2
-  EXPECT_EQ(
-      run(d, "carmen_to_bag " + d / "in.log " + d / "o.bag --json " + d / "none/o.json").status, 2);
+  EXPECT_EQ(run("carmen_to_bag " + d / "in.log " + d / "o.bag --json " + d / "none/o.json").status,
+            2);
 }
 
 TEST_F(Tools, PosesThatDoNotFitTheLogAreRefused) {
   writeFile(d / "clean.log", scanLine(1, 0) + scanLine(2, 0.5));
   const std::string build = "build_map " + d / "clean.log " + d / "o.yaml --poses ";
-  EXPECT_TRUE(refused(run(d, build + d / "none.tum"), "none.tum"));
-  EXPECT_TRUE(refused(run(d, build + "ground_truth"), "no ground truth"));
+  EXPECT_TRUE(refused(run(build + d / "none.tum"), "none.tum"));
+  EXPECT_TRUE(refused(run(build + "ground_truth"), "no ground truth"));
   writeFile(d / "late.tum", "100 0 0 0 0 0 0 1\n");
-  EXPECT_TRUE(refused(run(d, build + d / "late.tum"), "no scan falls into the time"));
+  EXPECT_TRUE(refused(run(build + d / "late.tum"), "no scan falls into the time"));
   writeFile(d / "r.txt", "# scan_index\n0 0 0 0 0 0\n");
-  EXPECT_TRUE(refused(run(d, build + d / "r.txt"), "1 poses for 2 scans"));
-  EXPECT_TRUE(refused(run(d, build + "odometry --resolution 0"), "resolution"));
-  EXPECT_TRUE(refused(run(d, "build_map " + d / "clean.log " + d / "o.pgm --poses odometry"),
+  EXPECT_TRUE(refused(run(build + d / "r.txt"), "1 poses for 2 scans"));
+  EXPECT_TRUE(refused(run(build + "odometry --resolution 0"), "resolution"));
+  EXPECT_TRUE(refused(run("build_map " + d / "clean.log " + d / "o.pgm --poses odometry"),
                       "name of the image"));
 }
 
 /// A program that fails with `error` after a part of its work.
-Result runPartly(const std::string& json_path, const std::exception_ptr& error) {
+ProgramRun runPartly(const std::string& json_path, const std::exception_ptr& error) {
   CLI::App app;
   const char* const arguments[] = {"partly", "--json", json_path.c_str()};
   ::testing::internal::CaptureStderr();
-  Result r;
+  ProgramRun r;
   r.status = runTool(3, arguments, app, [&]() -> nlohmann::json {
     throw PartialResult{{{"done", 1}}, error};
   });
@@ -184,7 +165,7 @@ Result runPartly(const std::string& json_path, const std::exception_ptr& error) 
 
 TEST_F(Tools, APartialResultIsWrittenAndItsErrorTold) {
   const auto unusable = std::make_exception_ptr(InputError("talk.txt", "line 3", "is nothing"));
-  const Result r = runPartly(d / "part.json", unusable);
+  const ProgramRun r = runPartly(d / "part.json", unusable);
   EXPECT_TRUE(refused(r, "line 3"));
   EXPECT_EQ(r.errors.find("cannot be written"), std::string::npos) << r.errors;
   EXPECT_EQ(nlohmann::json::parse(fileBytes(d / "part.json")), nlohmann::json({{"done", 1}}));
@@ -192,13 +173,13 @@ TEST_F(Tools, APartialResultIsWrittenAndItsErrorTold) {
 
 TEST_F(Tools, BothErrorsOfAPartialResultAreTold) {
   const auto unusable = std::make_exception_ptr(InputError("talk.txt", "line 3", "is nothing"));
-  const Result r = runPartly(d / "none/part.json", unusable);
+  const ProgramRun r = runPartly(d / "none/part.json", unusable);
   EXPECT_TRUE(refused(r, "line 3"));
   EXPECT_TRUE(refused(r, "cannot be written"));
   EXPECT_TRUE(refused(r, "none/part.json"));
   // The first error decides on the status.
   const auto failed = std::make_exception_ptr(std::runtime_error("broken"));
-  const Result other = runPartly(d / "none/part.json", failed);
+  const ProgramRun other = runPartly(d / "none/part.json", failed);
   EXPECT_EQ(other.status, 1);
   EXPECT_EQ(other.errors.rfind("error: broken; ", 0), 0U) << other.errors;
 }

@@ -1,6 +1,5 @@
 #include <string>
 
-#include "hyselam_common/checksum.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/fuzz_target.hpp"
 #include "hyselam_gr2to/octomap/octomap_reader.hpp"
@@ -31,18 +30,11 @@ void octoMap(const std::uint8_t* data, std::size_t size) {
 }
 
 /// The file of a border model: refused, or trees whose text is the same again, and whose odds of
-/// any border are found. The checksum is made right first, or nearly all would end there.
+/// any border are found.
 void borderTrees(const std::uint8_t* data, std::size_t size) {
-  std::string text = textOf(data, size);
-  const std::size_t last = text.rfind("checksum ");
-  if (last != std::string::npos) {
-    text.resize(last);
-    text += "checksum " + hyselam::crc32Text(text) + "\n";
-  }
+  const std::string text = hyselam::testing::withRightChecksum(textOf(data, size));
   try {
-    const BorderModel model = BorderModel::fromText(text, "fuzz");
-    const std::string written = model.toText();
-    require(BorderModel::fromText(written, "written").toText() == written);
+    const auto model = hyselam::testing::modelWrittenBack<BorderModel>(text);
     model.oddsOfOnePlace({});
   } catch (const hyselam::InputError&) {
     return;

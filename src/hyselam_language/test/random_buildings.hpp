@@ -38,12 +38,7 @@ class RandomBuildings {
         if (pick(3) != 0) continue;
         const auto side = static_cast<Side>(pick(5));
         const Id from = b.places[i].id;
-        DescribedConnection made;
-        made.from = from;
-        made.to = b.places[j].id;
-        made.side = side;
-        made.order = rows[{from, side}]++;
-        b.connections.push_back(made);
+        b.connections.push_back({from, b.places[j].id, side, rows[{from, side}]++});
       }
     }
     if (count >= 3 && pick(2) == 0)
@@ -65,12 +60,7 @@ class RandomBuildings {
 
  private:
   static DescribedRelation relation(RelationKind kind, Id a, Id other, Id c = 0) {
-    DescribedRelation made;
-    made.kind = kind;
-    made.a = a;
-    made.b = other;
-    made.c = c;
-    return made;
+    return {kind, a, other, c};
   }
 
   /// Ranks rise along a row; only its last place is counted from the end.

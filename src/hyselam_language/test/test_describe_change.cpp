@@ -21,21 +21,11 @@ DescribedBuilding rooms(const std::vector<std::string>& names) {
 }
 
 DescribedConnection connection(Id from, Id to, Side side, std::size_t order = 0) {
-  DescribedConnection made;
-  made.from = from;
-  made.to = to;
-  made.side = side;
-  made.order = order;
-  return made;
+  return {from, to, side, order};
 }
 
 DescribedRelation relation(RelationKind kind, Id a, Id b, Id c = 0) {
-  DescribedRelation made;
-  made.kind = kind;
-  made.a = a;
-  made.b = b;
-  made.c = c;
-  return made;
+  return {kind, a, b, c};
 }
 
 const Grammar& english() {

@@ -55,12 +55,9 @@ TEST(DescriptionXml, DescriptionsAreReadBackEqual) {
 }
 
 TEST(DescriptionXml, RandomDescriptionsAreReadBackEqual) {
-  for (unsigned seed = 0; seed < 500; ++seed) {
-    const DescribedBuilding building = testing::RandomDescriptions(seed).description();
-    const std::string text = toXml(building);
-    ASSERT_EQ(descriptionFromXml(text), building) << "seed " << seed << "\n" << text;
-    ASSERT_EQ(toXml(descriptionFromXml(text)), text) << "seed " << seed;
-  }
+  hyselam::testing::expectReadBack(
+      500, [](unsigned seed) { return testing::RandomDescriptions(seed).description(); },
+      [](const std::string& text) { return descriptionFromXml(text); });
 }
 
 #ifdef HYSELAM_HAVE_RAPIDCHECK

@@ -4,7 +4,6 @@
 
 #include "../src/language/object_words.hpp"
 #include "../src/segmentation/relation_model.hpp"
-#include "hyselam_common/checksum.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/fuzz_target.hpp"
 #include "hyselam_objects/language/fill_map.hpp"
@@ -116,19 +115,11 @@ void objectCloud(const std::uint8_t* data, std::size_t size) {
 }
 
 /// The file of the odds of patches: refused, or weights whose text is the same again, with which
-/// the odds of any relation are found. The checksum is made right first, or nearly all would end
-/// there.
+/// the odds of any relation are found.
 void patchRelations(const std::uint8_t* data, std::size_t size) {
-  std::string text = textOf(data, size);
-  const std::size_t last = text.rfind("checksum ");
-  if (last != std::string::npos) {
-    text.resize(last);
-    text += "checksum " + hyselam::crc32Text(text) + "\n";
-  }
+  const std::string text = hyselam::testing::withRightChecksum(textOf(data, size));
   try {
-    const RelationModel model = RelationModel::fromText(text, "fuzz");
-    const std::string written = model.toText();
-    require(RelationModel::fromText(written, "written").toText() == written);
+    const auto model = hyselam::testing::modelWrittenBack<RelationModel>(text);
     PatchRelation relation;
     relation.convex = relation.hidden = 5;
     require(std::abs(model.oddsOfOneObject(relation, true)) <= 16.0);

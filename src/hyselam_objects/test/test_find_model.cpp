@@ -7,12 +7,12 @@
 
 #include "../bench/table_scenes.hpp"
 #include "hyselam_common/testing/files.hpp"
+#include "hyselam_common/testing/program_run.hpp"
 #include "hyselam_objects/pcl/cloud_io.hpp"
 #include "hyselam_objects/pcl/find_model.hpp"
 #include "hyselam_objects/segmentation/segment_cloud.hpp"
 #include "hyselam_sim/pile.hpp"
 #include "nlohmann/json.hpp"
-#include "run_program.hpp"
 
 using namespace hyselam_objects;  // NOLINT: a test, not a header
 using hyselam::testing::fileBytes;
@@ -48,7 +48,7 @@ OrganizedCloud largestThing(const OrganizedCloud& scene) {
 }
 
 int shell(const std::string& arguments, const TemporaryDirectory& directory) {
-  return hyselam_objects::runProgram(HYSELAM_FIND_MODEL, arguments, directory);
+  return hyselam::testing::runProgram(HYSELAM_TOOLS "/find_model " + arguments, directory).status;
 }
 
 TEST(FindModel, FarPointsThatAreTooFewToBeDescribedChangeNothing) {

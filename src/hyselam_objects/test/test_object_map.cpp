@@ -95,9 +95,8 @@ TEST(ObjectMap, FollowsItsSchema) {
   saveXml(directory / "dictionary.xml", sampleDictionary());
   for (const auto& [file, schema] : {std::pair<const char*, const char*>{"map.xml", "object_map"},
                                      {"dictionary.xml", "object_dictionary"}}) {
-    const std::string command = std::string("xmllint --noout --schema '") +
-                                HYSELAM_OBJECTS_SOURCE_DIR + "/xsd/" + schema + ".xsd' '" +
-                                (directory / file) + "' 2>&1";
+    const std::string command = std::string("xmllint --noout --schema '") + HYSELAM_PACKAGE_DIR +
+                                "/xsd/" + schema + ".xsd' '" + (directory / file) + "' 2>&1";
     EXPECT_EQ(std::system(command.c_str()), 0) << file;
   }
 }

@@ -47,8 +47,7 @@ bool holds(const std::string& text, const YAML::Node& words, bool wanted) {
 }
 
 Score score(const std::string& file, const std::string& language) {
-  const YAML::Node corpus =
-      YAML::LoadFile(std::string(HYSELAM_OBJECTS_SOURCE_DIR) + "/test/data/" + file);
+  const YAML::Node corpus = YAML::LoadFile(std::string(HYSELAM_PACKAGE_DIR) + "/test/data/" + file);
   const ObjectParser parser = ObjectParser::shipped(language);
   Score score;
   for (const YAML::Node& each : corpus) {
@@ -175,7 +174,7 @@ TEST(ObjectText, KnowsInOneLanguageWhatWasNamedInTheOther) {
 
 // A word that means different things in the two languages would join them.
 TEST(ObjectText, KindsOfOneLanguageAreNoOthersOfTheOther) {
-  const std::string folder = std::string(HYSELAM_OBJECTS_SOURCE_DIR) + "/grammar/";
+  const std::string folder = std::string(HYSELAM_PACKAGE_DIR) + "/grammar/";
   const YAML::Node pt = YAML::LoadFile(folder + "words_pt.yaml");
   const ObjectParser english = ObjectParser::shipped("en");
   std::set<std::string> nouns;
@@ -209,8 +208,8 @@ TEST(ObjectText, UnderstandsKindsOfSentences) {
 TEST(ObjectText, KnowsTheSameThingsAsTheLayerOfPlaces) {
   const hyselam_topo::TopoParser places;
   for (const char* const language : {"en", "pt"}) {
-    const YAML::Node words = YAML::LoadFile(std::string(HYSELAM_OBJECTS_SOURCE_DIR) +
-                                            "/grammar/words_" + language + ".yaml");
+    const YAML::Node words =
+        YAML::LoadFile(std::string(HYSELAM_PACKAGE_DIR) + "/grammar/words_" + language + ".yaml");
     hyselam_topo::ParseOptions options;
     options.language = language;
     const bool english = std::string(language) == "en";

@@ -13,11 +13,11 @@
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/rng.hpp"
 #include "hyselam_common/testing/files.hpp"
+#include "hyselam_common/testing/program_run.hpp"
 #include "hyselam_objects/pcl/cloud_io.hpp"
 #include "hyselam_objects/pcl/segment_unorganized.hpp"
 #include "hyselam_objects/segmentation/segment_cloud.hpp"
 #include "hyselam_sim/camera.hpp"
-#include "run_program.hpp"
 
 namespace hyselam_objects {
 namespace {
@@ -464,7 +464,8 @@ TEST(PcdFile, RefusesInvalidFiles) {
 }
 
 int shell(const std::string& arguments, const TemporaryDirectory& directory) {
-  return hyselam_objects::runProgram(HYSELAM_SEGMENT_CLOUD, arguments, directory);
+  return hyselam::testing::runProgram(HYSELAM_TOOLS "/segment_cloud " + arguments, directory)
+      .status;
 }
 
 TEST(SegmentCloudTool, WritesLabelsAndJson) {

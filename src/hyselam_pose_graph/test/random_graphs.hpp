@@ -1,6 +1,10 @@
 // Pose graphs with a known truth, from seeds.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
 #include "hyselam_common/rng.hpp"
 #include "hyselam_pose_graph/pose_graph.hpp"
 
@@ -28,6 +32,15 @@ inline hyselam_pose_graph::PoseEdge measured(int from, int to,
   e.information = Eigen::Vector3d(w, w, w).asDiagonal();
   e.information(0, 1) = e.information(1, 0) = 0.2 * w;
   return e;
+}
+
+/// The largest difference between two poses of one number [m or rad].
+inline double worst(const std::vector<hyselam::Pose2>& a, const std::vector<hyselam::Pose2>& b) {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    worst = std::max(
+        {worst, distance(a[i], b[i]), std::abs(hyselam::normalizeAngle(a[i].theta - b[i].theta))});
+  return worst;
 }
 
 /// A walk over streets a metre apart, with a loop wherever it comes back to a crossing.

@@ -16,6 +16,7 @@ namespace {
 
 using namespace hyselam_pose_graph;  // NOLINT: a test
 using hyselam::Pose2;
+using random_graphs::worst;
 
 /// Appendix B written down plainly: dense matrices, numeric derivatives, full steps. The first pose
 /// is fixed.
@@ -59,14 +60,6 @@ std::vector<Pose2> denseGaussNewton(const PoseGraph& graph, std::vector<Pose2> p
     }
   }
   return poses;
-}
-
-double worst(const std::vector<Pose2>& a, const std::vector<Pose2>& b) {
-  double worst = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i)
-    worst = std::max(
-        {worst, distance(a[i], b[i]), std::abs(hyselam::normalizeAngle(a[i].theta - b[i].theta))});
-  return worst;
 }
 
 TEST(GraphOptimizer, EqualsDenseGaussNewton) {

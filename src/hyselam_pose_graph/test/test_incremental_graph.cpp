@@ -9,14 +9,7 @@ namespace {
 
 using namespace hyselam_pose_graph;  // NOLINT: a test
 using hyselam::Pose2;
-
-double worst(const std::vector<Pose2>& a, const std::vector<Pose2>& b) {
-  double worst = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i)
-    worst = std::max(
-        {worst, distance(a[i], b[i]), std::abs(hyselam::normalizeAngle(a[i].theta - b[i].theta))});
-  return worst;
-}
+using random_graphs::worst;
 
 /// The graph cut off after some pose, edges in order.
 PoseGraph firstPart(const PoseGraph& whole, int poses) {

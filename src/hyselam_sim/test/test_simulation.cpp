@@ -208,7 +208,7 @@ TEST(People, AreSeenAndKeepOffTheRobot) {
 }
 
 TEST(Readme, ExamplesOfBothFormatsWork) {
-  std::ifstream in(HYSELAM_SIM_README);
+  std::ifstream in(HYSELAM_PACKAGE_DIR "/README.md");
   std::stringstream text;
   text << in.rdbuf();
   std::vector<std::string> examples;

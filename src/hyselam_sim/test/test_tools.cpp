@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
-#include <sys/wait.h>
 #include <tf2_msgs/TFMessage.h>
 
 #include <algorithm>
@@ -13,6 +12,7 @@
 #include "hyselam_common/map_io.hpp"
 #include "hyselam_common/ros/bag_io.hpp"
 #include "hyselam_common/testing/files.hpp"
+#include "hyselam_common/testing/program_run.hpp"
 
 namespace {
 
@@ -27,19 +27,15 @@ class Tools : public testing::Test {
   fs::path file(const std::string& name) const { return directory_ / name; }
 
   int run(const std::string& tool, const std::string& arguments) {
-    const std::string command = "\"" + tool + "\" " + arguments + " >" + file("stdout").string() +
-                                " 2>" + file("stderr").string();
-    const int status = std::system(command.c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return hyselam::testing::runProgram("\"" HYSELAM_TOOLS "/" + tool + "\" " + arguments,
+                                        directory_)
+        .status;
   }
-  int simulate(const std::string& arguments) { return run(HYSELAM_SIMULATE, arguments); }
+  int simulate(const std::string& arguments) { return run("simulate", arguments); }
 
+  /// Of the program that ran last.
   void expectError(int status, const std::string& part) {
-    const std::string error = content(file("stderr"));
-    EXPECT_EQ(status, 2) << error;
-    EXPECT_EQ(error.rfind("error: ", 0), 0U) << error;
-    EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << error;
-    EXPECT_NE(error.find(part), std::string::npos) << error;
+    EXPECT_TRUE(hyselam::testing::refused({status, "", content(file("stderr"))}, part));
   }
 
   hyselam::testing::TemporaryDirectory directory_;
@@ -61,7 +57,7 @@ TEST_F(Tools, EqualSeedsGiveEqualBytesAndOtherSeedsOthers) {
 
 TEST_F(Tools, DrawsPilesBySeed) {
   for (const char* name : {"a", "b"}) {
-    ASSERT_EQ(run(HYSELAM_PILE, "--seed 3 --things 3 --with mug --out " + file(name).string() +
+    ASSERT_EQ(run("pile", "--seed 3 --things 3 --with mug --out " + file(name).string() +
                                     " --json " + file("j.json").string()),
               0)
         << content(file("stderr"));
@@ -74,8 +70,8 @@ TEST_F(Tools, DrawsPilesBySeed) {
   EXPECT_EQ(json.at("things").size(), 3U);
   EXPECT_GE(json.at("visible").get<double>(), 0.4);
   EXPECT_EQ(json.at("thing_in_camera").size(), 4U);
-  expectError(run(HYSELAM_PILE, "--with elephant --out " + file("c").string()), "elephant");
-  expectError(run(HYSELAM_PILE, "--show mug --with tin --out " + file("c").string()), "");
+  expectError(run("pile", "--with elephant --out " + file("c").string()), "elephant");
+  expectError(run("pile", "--show mug --with tin --out " + file("c").string()), "");
 }
 
 TEST_F(Tools, FilmsARun) {
@@ -83,10 +79,10 @@ TEST_F(Tools, FilmsARun) {
   const std::string options =
       " --route small --rate 0.5 --width 64 --height 48 --bag " + file("run.bag").string();
   for (const char* name : {"a", "b"}) {
-    ASSERT_EQ(run(HYSELAM_FILM, options + " --jpeg 90 --out " +
-                                    file(std::string(name) + ".bag").string() + " --images " +
-                                    file(name).string() + " --json " + file("j.json").string()),
-              0)
+    ASSERT_EQ(
+        run("film", options + " --jpeg 90 --out " + file(std::string(name) + ".bag").string() +
+                        " --images " + file(name).string() + " --json " + file("j.json").string()),
+        0)
         << content(file("stderr"));
   }
   EXPECT_TRUE(content(file("a.bag")) == content(file("b.bag")));
@@ -117,9 +113,9 @@ TEST_F(Tools, TellsWhereTheCameraIsThoughTheRunTellsOfNoMounts) {
     }
   }
   for (const char* name : {"run", "bare"}) {
-    ASSERT_EQ(run(HYSELAM_FILM, "--route small --rate 0.1 --width 64 --height 48 --bag " +
-                                    file(std::string(name) + ".bag").string() + " --out " +
-                                    file("filmed.bag").string()),
+    ASSERT_EQ(run("film", "--route small --rate 0.1 --width 64 --height 48 --bag " +
+                              file(std::string(name) + ".bag").string() + " --out " +
+                              file("filmed.bag").string()),
               0)
         << content(file("stderr"));
     rosbag::Bag filmed(file("filmed.bag").string());
@@ -135,16 +131,16 @@ TEST_F(Tools, TellsWhereTheCameraIsThoughTheRunTellsOfNoMounts) {
 }
 
 TEST_F(Tools, RefusesToFilmWhatCannotBeFilmed) {
-  expectError(run(HYSELAM_FILM, "--route small --bag " + file("none.bag").string() + " --out " +
-                                    file("o.bag").string()),
+  expectError(run("film", "--route small --bag " + file("none.bag").string() + " --out " +
+                              file("o.bag").string()),
               "none.bag");
   ASSERT_EQ(simulate("--route small --out " + file("run.bag").string()), 0);
-  expectError(run(HYSELAM_FILM, "--route small --bag " + file("run.bag").string()), "--out");
-  expectError(run(HYSELAM_FILM, "--route small --width 3 --bag " + file("run.bag").string() +
-                                    " --out " + file("o.bag").string()),
+  expectError(run("film", "--route small --bag " + file("run.bag").string()), "--out");
+  expectError(run("film", "--route small --width 3 --bag " + file("run.bag").string() + " --out " +
+                              file("o.bag").string()),
               "width");
-  expectError(run(HYSELAM_FILM, "--route small --things none.yaml --bag " +
-                                    file("run.bag").string() + " --out " + file("o.bag").string()),
+  expectError(run("film", "--route small --things none.yaml --bag " + file("run.bag").string() +
+                              " --out " + file("o.bag").string()),
               "none.yaml");
   EXPECT_FALSE(fs::exists(file("o.bag")));
 }
@@ -166,8 +162,7 @@ TEST_F(Tools, WritesBagMapPictureAndJson) {
 }
 
 TEST_F(Tools, PlanToMapWritesTheMap) {
-  ASSERT_EQ(run(HYSELAM_PLAN_TO_MAP, "mcl_c " + file("m.yaml").string()), 0)
-      << content(file("stderr"));
+  ASSERT_EQ(run("plan_to_map", "mcl_c " + file("m.yaml").string()), 0) << content(file("stderr"));
   const hyselam::OccupancyGrid grid = hyselam::loadMap(file("m.yaml").string());
   EXPECT_EQ(grid.geometry.width, 262);
   EXPECT_EQ(grid.geometry.origin.x, -0.6);
@@ -175,7 +170,7 @@ TEST_F(Tools, PlanToMapWritesTheMap) {
 
 TEST_F(Tools, Help) {
   EXPECT_EQ(simulate("--help"), 0);
-  EXPECT_EQ(run(HYSELAM_PLAN_TO_MAP, "--help"), 0);
+  EXPECT_EQ(run("plan_to_map", "--help"), 0);
 }
 
 TEST_F(Tools, BadUsage) {
@@ -197,7 +192,7 @@ TEST_F(Tools, UnknownPictureFormat) {
               "p.xyz");
 }
 TEST_F(Tools, BadResolution) {
-  expectError(run(HYSELAM_PLAN_TO_MAP, "small " + file("m.yaml").string() + " --resolution -1"),
+  expectError(run("plan_to_map", "small " + file("m.yaml").string() + " --resolution -1"),
               "resolution");
 }
 TEST_F(Tools, RouteOfAnotherPlan) {
@@ -207,20 +202,20 @@ TEST_F(Tools, RouteOfAnotherPlan) {
 
 TEST_F(Tools, GeneratedPlansBecomeMaps) {
   const std::string plan = file("plan.yaml").string();
-  ASSERT_EQ(run(HYSELAM_GENERATE_PLAN, plan + " --seed 4 --furniture --rotation 10"), 0)
+  ASSERT_EQ(run("generate_plan", plan + " --seed 4 --furniture --rotation 10"), 0)
       << content(file("stderr"));
-  ASSERT_EQ(run(HYSELAM_PLAN_TO_MAP, plan + " " + file("map.yaml").string()), 0)
+  ASSERT_EQ(run("plan_to_map", plan + " " + file("map.yaml").string()), 0)
       << content(file("stderr"));
   EXPECT_GT(hyselam::loadMap(file("map.yaml").string()).geometry.width, 100);
 }
 
 TEST_F(Tools, PlansThatCannotBeGeneratedAreRefused) {
   const std::string plan = file("plan.yaml").string();
-  expectError(run(HYSELAM_GENERATE_PLAN, plan + " --min-door 0.2"), "min_door");
-  expectError(run(HYSELAM_GENERATE_PLAN, plan + " --max-door 0.6"), "max_door");
-  expectError(run(HYSELAM_GENERATE_PLAN, plan + " --layout castle"), "castle");
-  expectError(run(HYSELAM_GENERATE_PLAN, plan + " --seed one"), "seed");
-  expectError(run(HYSELAM_GENERATE_PLAN, file("missing/plan.yaml").string()), "missing");
+  expectError(run("generate_plan", plan + " --min-door 0.2"), "min_door");
+  expectError(run("generate_plan", plan + " --max-door 0.6"), "max_door");
+  expectError(run("generate_plan", plan + " --layout castle"), "castle");
+  expectError(run("generate_plan", plan + " --seed one"), "seed");
+  expectError(run("generate_plan", file("missing/plan.yaml").string()), "missing");
   EXPECT_FALSE(fs::exists(plan));
 }
 

@@ -113,6 +113,13 @@ void tellOfGlass(Visit* v) {
   v->say("Yes.");
 }
 
+/// The glass is told of, the map has its places, and the robot stands at the corridor's beginning.
+void beginInCorridor(Visit* v) {
+  tellOfGlass(v);
+  v->segment();
+  v->at(1.0, 1.2, 0.0);
+}
+
 const char kDescription[] =
     "Robot, you are in the corridor. On your left you have room i-109, then i-110 and i-111. You "
     "are "
@@ -315,9 +322,7 @@ TEST(Dialogue, AsksForTheNameThatSeparatesEqualAssignments) {
   DialogueParams params;
   params.ask_from_afar = true;
   Visit v(params);
-  tellOfGlass(&v);
-  v.segment();
-  v.at(1.0, 1.2, 0.0);
+  beginInCorridor(&v);
   // Three rooms of one size on no side that was told: who could know?
   Reply told = v.say(
       "You are in the corridor. The corridor is connected to room A. The corridor is connected to "
@@ -340,9 +345,7 @@ TEST(Dialogue, AsksForTheNameThatSeparatesEqualAssignments) {
 
 TEST(Dialogue, ASentenceThatLetsMoreAnswersFitMovesNoName) {
   Visit v;
-  tellOfGlass(&v);
-  v.segment();
-  v.at(1.0, 1.2, 0.0);
+  beginInCorridor(&v);
   v.say("You are in the corridor. The corridor is connected to room M.");
   const auto where = [&v] {
     std::map<std::string, std::vector<Id>> places;
@@ -367,9 +370,7 @@ TEST(Dialogue, ANoAboutAnotherPlaceIsFollowedByAQuestionAboutThatPlace) {
   DialogueParams params;
   params.ask_from_afar = true;
   Visit v(params);
-  tellOfGlass(&v);
-  v.segment();
-  v.at(1.0, 1.2, 0.0);
+  beginInCorridor(&v);
   std::string told = "You are in the corridor.";
   for (const char* name : {"A", "B", "C", "D", "E", "F"}) {
     told += std::string(" The corridor is connected to room ") + name + ".";
@@ -386,9 +387,7 @@ TEST(Dialogue, ANoAboutAnotherPlaceIsFollowedByAQuestionAboutThatPlace) {
 
 TEST(Dialogue, CorrectionsReplaceStatements) {
   Visit v;
-  tellOfGlass(&v);
-  v.segment();
-  v.at(1.0, 1.2, 0.0);
+  beginInCorridor(&v);
   v.say(
       "You are in the corridor. On your left you have the kitchen. The kitchen is 15 by 6 meters.");
   v.say("No, the kitchen is on your right.");

@@ -1,11 +1,9 @@
 #include <gtest/gtest.h>
 #include <octomap/OcTree.h>
-#include <sys/wait.h>
-
-#include <cstdlib>
 
 #include "hyselam_common/map_io.hpp"
 #include "hyselam_common/testing/files.hpp"
+#include "hyselam_common/testing/program_run.hpp"
 #include "hyselam_gr2to/testing/voxel_building.hpp"
 
 namespace hyselam_topo {
@@ -24,12 +22,10 @@ std::int8_t valueAt(const OccupancyGrid& grid, double x, double y) {
   return grid.valueOr(grid.geometry.cellAt({x, y}));
 }
 
-/// The exit status of octomap_to_map; its output goes to `dir`/output.
+/// The exit status of octomap_to_map.
 int octomapToMap(const TemporaryDirectory& dir, const std::string& arguments) {
-  const std::string command =
-      "'" HYSELAM_TOOLS "/octomap_to_map' " + arguments + " > '" + (dir / "output") + "' 2>&1";
-  const int status = std::system(command.c_str());
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return hyselam::testing::runProgram("'" HYSELAM_TOOLS "/octomap_to_map' " + arguments, dir)
+      .status;
 }
 
 TEST(OctomapToMap, WritesMapAndPictureOrRefuses) {
@@ -47,11 +43,11 @@ TEST(OctomapToMap, WritesMapAndPictureOrRefuses) {
   EXPECT_EQ(octomapToMap(dir, "--help"), 0);
   EXPECT_EQ(octomapToMap(dir, in), 2);
   EXPECT_EQ(octomapToMap(dir, in + out + "--picture '" + (dir / "m.png") + "'"), 0)
-      << fileBytes(dir / "output");
+      << fileBytes(dir / "stderr");
   EXPECT_EQ(valueAt(hyselam::loadMap(dir / "m.yaml"), 1.0, 1.0), OccupancyGrid::kFree);
   EXPECT_GT(fileBytes(dir / "m.png").size(), 500u);
   EXPECT_EQ(octomapToMap(dir, in + out + "--storey 3"), 2);
-  expectIn("error: " + (dir / "b.bt") + ": there is no storey 3", fileBytes(dir / "output"));
+  expectIn("error: " + (dir / "b.bt") + ": there is no storey 3", fileBytes(dir / "stderr"));
   EXPECT_EQ(octomapToMap(dir, in + out + "--max-free-height -1"), 2);
   EXPECT_EQ(octomapToMap(dir, "/nowhere/b.bt " + out), 2);
   EXPECT_EQ(octomapToMap(dir, in + "/nowhere/m.yaml"), 2);

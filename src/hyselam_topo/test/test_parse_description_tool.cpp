@@ -1,9 +1,7 @@
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-
-#include <cstdlib>
 
 #include "hyselam_common/testing/files.hpp"
+#include "hyselam_common/testing/program_run.hpp"
 #include "hyselam_language/building/description_xml.hpp"
 #include "hyselam_language/testing/language_outlines.hpp"
 
@@ -17,9 +15,7 @@ void expectParts(const std::string& message, const std::vector<std::string>& par
 }
 
 int status(const std::string& arguments) {
-  const std::string command =
-      std::string(HYSELAM_TOOLS "/parse_description ") + arguments + " > /dev/null 2>&1";
-  return WEXITSTATUS(std::system(command.c_str()));
+  return hyselam::testing::runProgram(HYSELAM_TOOLS "/parse_description " + arguments).status;
 }
 
 TEST(ParseDescriptionTool, WritesTheGraph) {

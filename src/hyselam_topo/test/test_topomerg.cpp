@@ -61,12 +61,7 @@ DescribedPlace told(Id id, const std::string& name, double area = 0.0) {
 }
 
 DescribedConnection connection(Id from, Id to, Side side = Side::kUnknown, std::size_t order = 0) {
-  DescribedConnection c;
-  c.from = from;
-  c.to = to;
-  c.side = side;
-  c.order = order;
-  return c;
+  return {from, to, side, order};
 }
 
 /// A corridor (1) with a room on its left (2) and right (3), as map and as told.

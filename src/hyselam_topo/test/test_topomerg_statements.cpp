@@ -50,12 +50,7 @@ struct Corridor {
   /// A further name, on a side of the corridor.
   DescribedConnection& add(Id id, Side side, std::size_t order = 0) {
     building.places.push_back(told(id, "room " + std::to_string(id)));
-    DescribedConnection c;
-    c.from = kCorridor;
-    c.to = id;
-    c.side = side;
-    c.order = order;
-    building.connections.push_back(c);
+    building.connections.push_back({kCorridor, id, side, order});
     return building.connections.back();
   }
   void relate(RelationKind kind, Id a, Id b, Id c = 0, bool denied = false,

@@ -1,6 +1,5 @@
 // The tool topomerg as a shell sees it.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -8,6 +7,7 @@
 #include <string>
 
 #include "hyselam_common/testing/files.hpp"
+#include "hyselam_common/testing/program_run.hpp"
 #include "hyselam_topological_map/topological_map_xml.hpp"
 
 using hyselam::testing::fileBytes;
@@ -17,17 +17,13 @@ namespace {
 class TopoMergTool : public testing::Test {
  protected:
   int run(const std::string& arguments) {
-    const std::string command = std::string("\"") + HYSELAM_TOOLS + "/topomerg\" " + arguments +
-                                " >" + (folder_ / "stdout") + " 2>" + (folder_ / "stderr");
-    const int status = std::system(command.c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return hyselam::testing::runProgram(
+               std::string("\"") + HYSELAM_TOOLS + "/topomerg\" " + arguments, folder_)
+        .status;
   }
+  /// Of the run that was last.
   void expectError(int status, const std::string& part) {
-    const std::string error = fileBytes(folder_ / "stderr");
-    EXPECT_EQ(2, status) << error;
-    EXPECT_EQ(0u, error.rfind("error: ", 0)) << error;
-    EXPECT_EQ(1, std::count(error.begin(), error.end(), '\n')) << error;
-    EXPECT_NE(std::string::npos, error.find(part)) << error;
+    EXPECT_TRUE(hyselam::testing::refused({status, "", fileBytes(folder_ / "stderr")}, part));
   }
   nlohmann::json json() { return nlohmann::json::parse(fileBytes(folder_ / "out.json")); }
 

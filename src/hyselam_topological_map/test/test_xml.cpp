@@ -66,12 +66,9 @@ TEST(Xml, MapRoundTrips) {
 }
 
 TEST(Xml, RandomMapsRoundTrip) {
-  for (unsigned seed = 0; seed < 200; ++seed) {
-    const AugmentedTopologicalMap map = testing::RandomMaps(seed).map();
-    const std::string text = toXml(map);
-    ASSERT_EQ(fromXml(text), map) << "seed " << seed << "\n" << text;
-    ASSERT_EQ(toXml(fromXml(text)), text) << "seed " << seed;
-  }
+  hyselam::testing::expectReadBack(
+      200, [](unsigned seed) { return testing::RandomMaps(seed).map(); },
+      [](const std::string& text) { return fromXml(text); });
 }
 
 #ifdef HYSELAM_HAVE_RAPIDCHECK

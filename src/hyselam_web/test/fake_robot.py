@@ -3,8 +3,6 @@ for; and a server in a thread. No test; others import it."""
 import asyncio
 import os
 import pathlib
-import random
-import socket
 import sys
 import threading
 import time
@@ -16,8 +14,9 @@ import numpy as np
 sys.dont_write_bytecode = True
 HERE = pathlib.Path(__file__).resolve().parent
 PACKAGE = HERE.parent
-sys.path.insert(0, str(PACKAGE / "scripts"))
+sys.path[:0] = [str(PACKAGE / "scripts"), str(PACKAGE / "../../scripts")]
 
+from free_port import free_port  # noqa: E402, F401 (for the tests)
 from hyselam_web import access, app, reports, sights, tiles, world  # noqa: E402
 from hyselam_web.requests import Refused  # noqa: E402
 
@@ -33,18 +32,6 @@ def wait_until(condition, what):
         if time.monotonic() > deadline:
             raise AssertionError(f"not within {WAIT:.0f} s: {what() if callable(what) else what}")
         time.sleep(0.01)
-
-
-def free_port():
-    """One that the system gives to nobody who does not ask for it: a server can be started there again."""
-    while True:
-        with socket.socket() as s:
-            port = random.randrange(20000, 32768)
-            try:
-                s.bind(("127.0.0.1", port))
-            except OSError:
-                continue
-            return port
 
 
 class SharedWorld(world.World):

@@ -30,16 +30,21 @@ class RecordingTest(unittest.TestCase):
                 apply(page, dict(entry, v=1))
             self.assertEqual((page["value"], page["table"]), (9, {"4": 16}))
 
+    def full_recording(self, folder, text, steps):
+        """One that ends at its size, and does."""
+        path, w = os.path.join(folder, "day.jsonl"), world.World()
+        recorder = recording.Recorder(path, most_bytes=2000)
+        for step in range(steps):
+            w.set("value", text + str(step))
+            recorder.take(float(step), w, tiles.MapTiles())
+        recorder.close()
+        self.assertTrue(recorder.full)
+        self.assertLessEqual(os.path.getsize(path), 2000)
+        return path
+
     def test_a_recording_ends_at_its_size_and_one_that_is_cut_off_is_read_so_far(self):
         with tempfile.TemporaryDirectory() as folder:
-            path, w = os.path.join(folder, "day.jsonl"), world.World()
-            recorder = recording.Recorder(path, most_bytes=2000)
-            for step in range(1000):
-                w.set("value", "x" * 20 + str(step))
-                recorder.take(float(step), w, tiles.MapTiles())
-            recorder.close()
-            self.assertTrue(recorder.full)
-            self.assertLessEqual(os.path.getsize(path), 2000)
+            path = self.full_recording(folder, "x" * 20, 1000)
             entries = recording.read(path)
             self.assertGreater(len(entries), 10)
             with open(path, "r+") as file:
@@ -61,14 +66,7 @@ class RecordingTest(unittest.TestCase):
 
     def test_the_size_of_a_recording_is_one_of_bytes(self):
         with tempfile.TemporaryDirectory() as folder:
-            path, w = os.path.join(folder, "day.jsonl"), world.World()
-            recorder = recording.Recorder(path, most_bytes=2000)
-            for step in range(100):
-                w.set("value", "日本語" * 10 + str(step))
-                recorder.take(float(step), w, tiles.MapTiles())
-            recorder.close()
-            self.assertTrue(recorder.full)
-            self.assertLessEqual(os.path.getsize(path), 2000)
+            self.full_recording(folder, "日本語" * 10, 100)
 
     @unittest.skipUnless(os.path.exists("/dev/full"), "this system has no /dev/full")
     def test_a_full_disc_ends_the_recording_and_nothing_else(self):

@@ -9,6 +9,7 @@
 #include "hyselam_common/rng.hpp"
 #include "ngram_slam/signatures/place_recognizer.hpp"
 #include "ngram_slam/signatures/signature_sensor.hpp"
+#include "random_scan.hpp"
 
 namespace {
 
@@ -99,13 +100,7 @@ BENCHMARK(searchAll)->Arg(1000)->Arg(10000)->Arg(100000)->Arg(1000000)->UseManua
 void makeSignature(benchmark::State& state) {
   const SignatureModel& model = SignatureModel::shipped();
   Rng rng(7);
-  hyselam::LaserScan scan;
-  scan.angle_min = -hyselam::kPi / 2;
-  scan.angle_increment = hyselam::radians(1.0);
-  scan.range_min = 0.05;
-  scan.range_max = 80.0;
-  for (int i = 0; i < 181; ++i) scan.ranges.push_back(static_cast<float>(rng.uniform(1.0, 15.0)));
-  const auto shared = std::make_shared<const hyselam::LaserScan>(scan);
+  const auto shared = randomIndoorScan(rng);
   std::int64_t places = 0;
   SignatureSensor sensor({}, [&](const PlaceOnWay&, const PlaceFeatures& features) {
     benchmark::DoNotOptimize(model.signatureOf(features));

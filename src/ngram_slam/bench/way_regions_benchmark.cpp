@@ -5,6 +5,7 @@
 
 #include "hyselam_common/rng.hpp"
 #include "ngram_slam/semantics/way_forest.hpp"
+#include "random_scan.hpp"
 
 namespace {
 
@@ -16,13 +17,7 @@ constexpr int kPlaces = 200;  // 50 m of way
 void classifyWay(benchmark::State& state) {
   const WayForest forest = WayForest::shipped();
   hyselam::Rng rng(7);
-  hyselam::LaserScan scan;
-  scan.angle_min = -hyselam::kPi / 2;
-  scan.angle_increment = hyselam::radians(1.0);
-  scan.range_min = 0.05;
-  scan.range_max = 80.0;
-  for (int i = 0; i < 181; ++i) scan.ranges.push_back(static_cast<float>(rng.uniform(1.0, 15.0)));
-  const auto shared = std::make_shared<const hyselam::LaserScan>(scan);
+  const auto shared = randomIndoorScan(rng);
   for (auto _ : state) {
     std::vector<WayPlace> run;
     SignatureSensor sensor(waySensorParams(), [&](const PlaceOnWay& at, const PlaceFeatures& f) {

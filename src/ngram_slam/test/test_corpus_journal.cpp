@@ -59,6 +59,14 @@ struct Growing {
   CorpusJournal journal;
 };
 
+/// That a journal which was loaded goes on: what is saved next is on the disk.
+void expectGoesOn(CorpusJournal& journal, Corpus corpus, std::uint32_t size,
+                  const TemporaryDirectory& folder) {
+  grow(corpus.observations, size);
+  journal.save(corpus.observations, corpus.classes, corpus.histogram);
+  ASSERT_EQ(bytesOf(CorpusJournal(folder / "c").load().corpus, folder), bytesOf(corpus, folder));
+}
+
 }  // namespace
 
 TEST(CorpusJournal, holdsWhatAWholeFileHolds) {
@@ -81,10 +89,7 @@ TEST(CorpusJournal, holdsWhatAWholeFileHolds) {
   EXPECT_GT(journal_before, 0u);
   // One that was loaded goes on.
   CorpusJournal next(folder / "c");
-  Corpus corpus = next.load().corpus;
-  grow(corpus.observations, 400);
-  next.save(corpus.observations, corpus.classes, corpus.histogram);
-  EXPECT_EQ(bytesOf(CorpusJournal(folder / "c").load().corpus, folder), bytesOf(corpus, folder));
+  expectGoesOn(next, next.load().corpus, 400, folder);
 }
 
 TEST(CorpusJournal, losesOnlyATruncatedBlockAndContinues) {
@@ -104,10 +109,7 @@ TEST(CorpusJournal, losesOnlyATruncatedBlockAndContinues) {
     ASSERT_EQ(loaded.corpus.observations.size(), expected) << cut;
     EXPECT_EQ(loaded.remark.empty(), cut == good || cut == 20);
     // What is saved next stands behind the last good block.
-    Corpus corpus = loaded.corpus;
-    grow(corpus.observations, 170);
-    journal.save(corpus.observations, corpus.classes, corpus.histogram);
-    ASSERT_EQ(bytesOf(CorpusJournal(folder / "c").load().corpus, folder), bytesOf(corpus, folder));
+    expectGoesOn(journal, loaded.corpus, 170, folder);
   }
 }
 

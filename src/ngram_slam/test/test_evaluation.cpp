@@ -1,7 +1,6 @@
 // What is true and how much of it is recognised: against hand-made cases and against looking at
 // every pair; the evaluator's tables against single runs.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -17,12 +16,12 @@
 #include "hyselam_sim/data.hpp"
 #include "hyselam_sim/simulation.hpp"
 #include "ngram_slam/matching/match_evaluation.hpp"
+#include "tool_test.hpp"
 
 using namespace ngram_slam;  // NOLINT: a test, not a header
 using hyselam::Pose2;
 using hyselam::testing::fileBytes;
 using hyselam::testing::messageOf;
-using hyselam::testing::TemporaryDirectory;
 
 namespace {
 
@@ -213,37 +212,24 @@ TEST(RecognitionScore, equalsTheCountOverAllPairs) {
 }
 
 /// A run through the university: a loop of 60 m two and a half times, with doors open.
-class Evaluator : public ::testing::Test {
+class Evaluator : public ToolTest {
  protected:
   static void SetUpTestSuite() {
-    directory = new TemporaryDirectory;
+    ToolTest::SetUpTestSuite();
     const hyselam_sim::FloorPlan plan =
         hyselam_sim::loadFloorPlan(hyselam_sim::planFile("university"));
     const auto route = hyselam_sim::parseRoute(
         "route: test\nstart: D\ndoors: E_R\ndirect: true\nsteps: [E, A, D, E, A, D, E]\n", "test");
     hyselam::writeBag(*directory / "1.bag", hyselam_sim::simulate(plan, route, 1).log);
   }
-  static void TearDownTestSuite() {
-    delete directory;
-    directory = nullptr;
-  }
   int run(const std::string& options) {
-    const int status =
-        std::system((std::string(HYSELAM_TOOLS) + "/evaluate_recognition " + d / "1.bag" +
-                     " --bandwidth 4 " + options + " >" + d / "stdout" + " 2>" + d / "stderr")
-                        .c_str());
-    errors = fileBytes(d / "stderr");
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return ToolTest::run("evaluate_recognition " + d / "1.bag" + " --bandwidth 4 " + options);
   }
   nlohmann::json json(const std::string& options) {
     EXPECT_EQ(run(options + " --json " + d / "j.json"), 0) << errors;
     return nlohmann::json::parse(fileBytes(d / "j.json"));
   }
-  static TemporaryDirectory* directory;
-  TemporaryDirectory& d = *directory;
-  std::string errors;
 };
-TemporaryDirectory* Evaluator::directory = nullptr;
 
 TEST_F(Evaluator, tableHasTheFiguresOfSingleRuns) {
   const auto table = json("--levels 2 --min-n 4,6 --n 2..3,5 --size-tolerances 0.2,0.3 --table " +

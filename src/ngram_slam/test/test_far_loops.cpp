@@ -11,6 +11,7 @@
 #include "ngram_slam/slam/loop_confidence.hpp"
 #include "ngram_slam/slam/path_segment.hpp"
 #include "ngram_slam/slam/segment_context.hpp"
+#include "signature_loop.hpp"
 
 using namespace ngram_slam;  // NOLINT: a test, not a header
 using hyselam::Rng;
@@ -76,17 +77,6 @@ std::vector<SlamKeyframe> straightWay(int n) {
     keyframes.push_back(k);
   }
   return keyframes;
-}
-
-SlamLoop signatureLoop(int older, int newer) {
-  SlamLoop l;
-  l.older = older;
-  l.newer = newer;
-  l.source = LoopSource::kSignature;
-  l.far = true;
-  l.inlier_ratio = 0.8;
-  l.fit = 0.97;
-  return l;
 }
 
 }  // namespace

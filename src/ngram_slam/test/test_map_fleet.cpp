@@ -16,8 +16,7 @@
 #include "hyselam_common/ros/bag_io.hpp"
 #include "hyselam_common/testing/files.hpp"
 #include "hyselam_common/trajectory_io.hpp"
-#include "hyselam_sim/generate_corridors.hpp"
-#include "hyselam_sim/simulation.hpp"
+#include "looped_corridors.hpp"
 
 using hyselam::testing::fileBytes;
 using hyselam::testing::TemporaryDirectory;
@@ -69,19 +68,15 @@ class Process {
 struct MapFleet : testing::Test {
   void SetUp() override {
     if (!hasDask()) GTEST_SKIP() << "python3-distributed is not installed";
-    hyselam_sim::CorridorParams corridors;
-    corridors.lines = 2;
-    corridors.loops = 1.0;
-    corridors.legs = 8;
-    const auto building = hyselam_sim::generateCorridors(4, corridors);
-    hyselam_sim::SimulationParams params;
-    params.scan_rate = 4.0;
+    const auto building = ngram_slam::loopedCorridors(4, 2, 8);
     std::filesystem::create_directory(d / "bags");
     std::filesystem::create_directory(d / "bags/second");
     for (const std::uint64_t seed : {4, 5, 6}) {
       const std::string name = seed == 6 ? "second/day" : "robot" + std::to_string(seed);
-      hyselam::writeBag(d / ("bags/" + name + ".bag"),
-                        hyselam_sim::simulate(building.plan, building.route, seed, params).log);
+      hyselam::writeBag(
+          d / ("bags/" + name + ".bag"),
+          hyselam_sim::simulate(building.plan, building.route, seed, ngram_slam::atScanRate(4.0))
+              .log);
     }
     const std::string whole = fileBytes(d / "bags/robot4.bag");
     writeFile(d / "bags/broken.bag", whole.substr(0, whole.size() / 3));

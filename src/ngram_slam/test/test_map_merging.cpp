@@ -11,6 +11,7 @@
 #include "ngram_slam/slam/map_ties.hpp"
 #include "ngram_slam/slam/slam_state_io.hpp"
 #include "ngram_slam/slam/state_parts.hpp"
+#include "signature_loop.hpp"
 #include "visits.hpp"
 
 namespace ngram_slam {
@@ -18,10 +19,7 @@ namespace {
 
 using hyselam::Pose2;
 
-/// Two robots in one building, one in another.
-struct Visits {
-  hyselam::RobotLog first = visit(5, 3, {}), second = visit(5, 4, {30.0, -7.0, 2.5}),
-                    other = visit(11, 5, {5.0, 5.0, 1.0});
+struct Visits : ThreeVisits {
   SlamState first_map = mapOf(first, 0.0, 0.6), second_map = mapOf(second, 0.3, 1.0),
             other_map = mapOf(other, 0.0, 0.6);
 };
@@ -332,14 +330,8 @@ TEST(MapTies, RunsOfTwoMapsThatCameInTurnContradictEachOther) {
   RunConnections connections;
   connections.connect(0, 2);
   const auto loop = [&](int older, int newer, const Pose2& measured) {
-    SlamLoop l;
-    l.older = older;
-    l.newer = newer;
+    SlamLoop l = signatureLoop(older, newer);
     l.measured = measured;
-    l.source = LoopSource::kSignature;
-    l.far = true;
-    l.inlier_ratio = 0.8;
-    l.fit = 0.97;
     return l;
   };
   // Where the map of run 1 lies in that of 0 and 2.

@@ -9,11 +9,13 @@
 #include "hyselam_common/testing/files.hpp"
 #include "ngram_slam/matching/ngram.hpp"
 #include "ngram_slam/matching/ngram_matcher.hpp"
+#include "random_matchers.hpp"
 #include "random_texts.hpp"
 #include "transcription/matching.hpp"
 
 using namespace ngram_slam;  // NOLINT: a test, not a header
 using hyselam::radians;
+using random_texts::randomParams;
 
 namespace {
 
@@ -84,21 +86,6 @@ std::map<std::pair<WordIndex, WordIndex>, std::pair<int, int>> byPair(
   return out;
 }
 
-NgramMatcherParams randomParams(hyselam::Rng& rng, int levels) {
-  NgramMatcherParams p;
-  p.tolerance.size = 0.1003 + 0.1 * rng.below(4);  // no ratio of small numbers: no ties
-  p.tolerance.angle = radians(15.0 + 15.0 * rng.below(4));
-  p.min_n.clear();
-  int n = 1 + static_cast<int>(rng.below(5));
-  for (int l = 0; l < levels; ++l) {
-    p.min_n.push_back(n);
-    n += static_cast<int>(rng.below(4));
-  }
-  p.index_gram = 1 + static_cast<int>(rng.below(4));
-  p.index_bits = 4 + static_cast<int>(rng.below(8));
-  return p;
-}
-
 }  // namespace
 
 TEST(WorkedExample, hasTheTwoGramsOfTheThesis) {
@@ -156,31 +143,14 @@ TEST(NgramMatcher, equalsTheTableOfAllPairsOnRandomTexts) {
     NgramMatcher matcher(text, params);
     // Word by word in one text out of two, else several at once.
     const bool one_by_one = rng.below(2) == 0;
-    std::vector<NgramMatch> found;
     WordLattice whole(levels);
     random_texts::write(whole, 20 + rng.below(60), rng);
-    for (Position p = 0; p < whole.positions(); ++p) {
-      if (whole.startsRun(p)) text.startRun();
-      text.push(whole.syllables(whole.realWord(p)));
-      if (!one_by_one && p + 1 < whole.positions() && rng.below(5) != 0) continue;
-      const auto& m = matcher.update();
-      found.insert(found.end(), m.begin(), m.end());
-    }
+    const auto found = random_texts::matchesOf(whole, one_by_one, rng, text, matcher);
     ASSERT_EQ(text.words(), whole.words());
 
     const auto words = transcription::plainWords(text);
-    std::map<std::pair<WordIndex, WordIndex>, std::pair<int, int>> expected;
-    for (int k = 1; k <= levels; ++k) {
-      const transcription::AllPairs table(words, k, params.tolerance);
-      for (WordIndex a = 0; a < words.size(); ++a) {
-        if (words[a].level != 0) continue;
-        for (WordIndex b = 0; b < a; ++b) {
-          if (table.at(a, b) >= params.min_n[static_cast<std::size_t>(k - 1)]) {
-            expected.emplace(std::make_pair(a, b), std::make_pair(k, table.at(a, b)));
-          }
-        }
-      }
-    }
+    const auto expected =
+        random_texts::matchedPairs<transcription::AllPairs>(words, levels, params);
     ASSERT_EQ(byPair(found), expected);
     accepted += expected.size();
     for (const auto& [pair, how] : expected) {

@@ -1,6 +1,5 @@
 // merge_maps as a shell sees it.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -12,66 +11,39 @@
 #include "hyselam_common/robot_log.hpp"
 #include "hyselam_common/testing/files.hpp"
 #include "hyselam_common/trajectory_io.hpp"
-#include "hyselam_sim/generate_corridors.hpp"
-#include "hyselam_sim/simulation.hpp"
 #include "ngram_slam/slam/slam_engine.hpp"
 #include "ngram_slam/slam/slam_state_io.hpp"
+#include "tool_test.hpp"
+#include "visits.hpp"
 
 using hyselam::testing::fileBytes;
-using hyselam::testing::TemporaryDirectory;
 using hyselam::testing::writeFile;
 
 namespace {
 
 using namespace ngram_slam;  // NOLINT: a test
 
-struct MergeMaps : testing::Test {
+struct MergeMaps : ToolTest {
   static void SetUpTestSuite() {
-    directory = new TemporaryDirectory;
-    hyselam_sim::CorridorParams corridors;
-    corridors.lines = 2;
-    corridors.loops = 1.0;
-    corridors.legs = 10;
-    const auto building = hyselam_sim::generateCorridors(4, corridors);
-    hyselam_sim::SimulationParams params;
-    params.scan_rate = 4.0;
+    ToolTest::SetUpTestSuite();
+    const auto building = loopedCorridors(4, 2, 10);
     for (const std::uint64_t seed : {4, 5, 6}) {
-      const auto log = hyselam_sim::simulate(building.plan, building.route, seed, params).log;
-      SlamEngine engine;
-      for (const hyselam::LaserScan& scan : log.scans) {
-        engine.add(scan, *hyselam::poseAt(log.odometry, scan.stamp, 1.0));
-        while (const auto job = engine.takeJob()) engine.apply(runJob(*job));
-      }
-      engine.endRun();
-      while (const auto job = engine.takeFinalJob()) engine.apply(runJob(*job));
-      SlamStateFile::save(*directory / ("robot" + std::to_string(seed) + ".state"), engine.state());
+      const auto log =
+          hyselam_sim::simulate(building.plan, building.route, seed, atScanRate(4.0)).log;
+      SlamStateFile::save(*directory / ("robot" + std::to_string(seed) + ".state"),
+                          mapOf(log, 0.0, 1.0));
       scans = log.scans.size();
     }
     SlamStateFile::save(*directory / "empty.state", SlamState{});
     const std::string whole = fileBytes(*directory / "robot4.state");
     writeFile(*directory / "cut.state", whole.substr(0, whole.size() / 2));
   }
-  static void TearDownTestSuite() {
-    delete directory;
-    directory = nullptr;
-  }
-  int run(const std::string& arguments) {
-    const int status = std::system((std::string(HYSELAM_TOOLS) + "/merge_maps " + arguments + " >" +
-                                    d / "stdout" + " 2>" + d / "stderr")
-                                       .c_str());
-    errors = fileBytes(d / "stderr");
-    output = fileBytes(d / "stdout");
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
+  int run(const std::string& arguments) { return ToolTest::run("merge_maps " + arguments); }
   std::string state(const std::string& name) const { return d / (name + ".state") + " "; }
 
-  static TemporaryDirectory* directory;
   static std::size_t scans;
-  const TemporaryDirectory& d = *directory;
-  std::string errors, output;
 };
 
-TemporaryDirectory* MergeMaps::directory = nullptr;
 std::size_t MergeMaps::scans = 0;
 
 TEST_F(MergeMaps, writesOneMapAndWhoMetWhom) {

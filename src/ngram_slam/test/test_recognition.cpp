@@ -1,6 +1,5 @@
 // From logs to scores: observations of a log, and the tools as a shell sees them.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -13,12 +12,12 @@
 #include "hyselam_common/testing/files.hpp"
 #include "ngram_slam/words/corpus.hpp"
 #include "ngram_slam/words/log_observations.hpp"
+#include "tool_test.hpp"
 
 using namespace ngram_slam;  // NOLINT: a test, not a header
 using hyselam::Pose2;
 using hyselam::testing::fileBytes;
 using hyselam::testing::messageOf;
-using hyselam::testing::TemporaryDirectory;
 using hyselam::testing::writeFile;
 
 namespace {
@@ -126,34 +125,13 @@ TEST(LogObservations, comeAtEveryStepOfThePath) {
   EXPECT_NE(messageOf<hyselam::ParameterError>([&] { observationsOf(log, params); }), "");
 }
 
-class Tools : public ::testing::Test {
+class Tools : public ToolTest {
  protected:
   static void SetUpTestSuite() {
-    directory = new TemporaryDirectory;
+    ToolTest::SetUpTestSuite();
     hyselam::writeBag(*directory / "r.bag", drive(3));
   }
-  static void TearDownTestSuite() {
-    delete directory;
-    directory = nullptr;
-  }
-  int run(const std::string& command) {
-    const int status = std::system(
-        (std::string(HYSELAM_TOOLS) + "/" + command + " >" + d / "stdout" + " 2>" + d / "stderr")
-            .c_str());
-    errors = fileBytes(d / "stderr");
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-  void expectRefused(const std::string& command, const std::string& part) {
-    EXPECT_EQ(run(command), 2) << errors;
-    EXPECT_EQ(errors.rfind("error: ", 0), 0u) << errors;
-    EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 1) << errors;
-    EXPECT_NE(errors.find(part), std::string::npos) << errors;
-  }
-  static TemporaryDirectory* directory;
-  TemporaryDirectory& d = *directory;
-  std::string errors;
 };
-TemporaryDirectory* Tools::directory = nullptr;
 
 TEST_F(Tools, wordsOfflineWritesWordsMatchesAndCorpus) {
   const std::string options = " --levels 2 --min-n 4,6 --bandwidth 1.5 --classes 10 ";

@@ -4,11 +4,10 @@
 #include <cmath>
 
 #include "hyselam_common/robot_log.hpp"
-#include "hyselam_sim/generate_corridors.hpp"
-#include "hyselam_sim/simulation.hpp"
 #include "ngram_slam/slam/known_maps.hpp"
 #include "ngram_slam/slam/run_connections.hpp"
 #include "ngram_slam/slam/slam_engine.hpp"
+#include "visits.hpp"
 
 namespace ngram_slam {
 namespace {
@@ -17,22 +16,10 @@ using hyselam::Pose2;
 
 /// A round through corridors; `visit`: another one has other errors.
 hyselam::RobotLog visit(std::uint64_t building, std::uint64_t visit) {
-  hyselam_sim::CorridorParams corridors;
-  corridors.lines = 3;
-  corridors.loops = 1.0;
-  corridors.legs = 16;
-  const auto made = hyselam_sim::generateCorridors(building, corridors);
-  hyselam_sim::SimulationParams params;
-  params.scan_rate = 5.0;
+  const auto made = loopedCorridors(building, 3, 16);
+  auto params = atScanRate(5.0);
   params.odometry.sigma = 0.01;
   return hyselam_sim::simulate(made.plan, made.route, visit, params).log;
-}
-
-void feed(SlamEngine* engine, const hyselam::RobotLog& log, std::size_t begin, std::size_t end) {
-  for (std::size_t i = begin; i < std::min(end, log.scans.size()); ++i) {
-    engine->add(log.scans[i], *hyselam::poseAt(log.odometry, log.scans[i].stamp, 1.0));
-    while (const auto job = engine->takeJob()) engine->apply(runJob(*job));
-  }
 }
 
 const hyselam::RobotLog& firstVisit() {
@@ -50,13 +37,7 @@ const hyselam::RobotLog& otherBuilding() {
 
 /// The map of the first visit.
 const SlamState& knownMap() {
-  static const SlamState state = [] {
-    SlamEngine engine;
-    feed(&engine, firstVisit(), 0, 100000);
-    engine.endRun();
-    while (const auto job = engine.takeFinalJob()) engine.apply(runJob(*job));
-    return engine.state();
-  }();
+  static const SlamState state = mapOf(firstVisit(), 0.0, 1.0);
   return state;
 }
 

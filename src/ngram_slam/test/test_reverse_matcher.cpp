@@ -5,11 +5,12 @@
 
 #include "ngram_slam/matching/ngram.hpp"
 #include "ngram_slam/matching/reverse_ngram_matcher.hpp"
+#include "random_matchers.hpp"
 #include "random_texts.hpp"
 #include "transcription/matching.hpp"
 
 using namespace ngram_slam;  // NOLINT: a test, not a header
-using hyselam::radians;
+using random_texts::randomParams;
 
 namespace {
 
@@ -47,8 +48,6 @@ class AllReversePairs {
   std::vector<int> length_;
 };
 
-using Found = std::map<std::pair<WordIndex, WordIndex>, std::pair<int, int>>;
-
 /// A random text with stretches that come back the other way, into `text`.
 void writeBothWays(WordLattice& text, std::size_t positions, hyselam::Rng& rng) {
   WordLattice source(1);
@@ -67,21 +66,6 @@ void writeBothWays(WordLattice& text, std::size_t positions, hyselam::Rng& rng) 
       text.push(random_texts::noisy(reversed(real[from - k]), rng, 0.15, 0.3));
     }
   }
-}
-
-NgramMatcherParams randomParams(hyselam::Rng& rng, int levels) {
-  NgramMatcherParams p;
-  p.tolerance.size = 0.1003 + 0.1 * rng.below(4);
-  p.tolerance.angle = radians(15.0 + 15.0 * rng.below(4));
-  p.min_n.clear();
-  int n = 1 + static_cast<int>(rng.below(5));
-  for (int l = 0; l < levels; ++l) {
-    p.min_n.push_back(n);
-    n += static_cast<int>(rng.below(4));
-  }
-  p.index_gram = 1 + static_cast<int>(rng.below(4));
-  p.index_bits = 4 + static_cast<int>(rng.below(8));
-  return p;
 }
 
 }  // namespace
@@ -120,15 +104,8 @@ TEST(ReverseNgramMatcher, equalsTheTableOfAllPairsOnRandomTexts) {
     writeBothWays(whole, 8 + rng.below(20), rng);
     ReverseNgramMatcher matcher(text, params);
     const bool one_by_one = rng.below(2) == 0;
-    std::vector<NgramMatch> found;
-    for (Position p = 0; p < whole.positions(); ++p) {
-      if (whole.startsRun(p)) text.startRun();
-      text.push(whole.syllables(whole.realWord(p)));
-      if (!one_by_one && p + 1 < whole.positions() && rng.below(5) != 0) continue;
-      const auto& m = matcher.update();
-      found.insert(found.end(), m.begin(), m.end());
-    }
-    Found got;
+    const auto found = random_texts::matchesOf(whole, one_by_one, rng, text, matcher);
+    random_texts::MatchedPairs got;
     for (const NgramMatch& m : found) {
       ASSERT_EQ(m.direction, Direction::kReverse);
       ASSERT_TRUE(
@@ -136,18 +113,7 @@ TEST(ReverseNgramMatcher, equalsTheTableOfAllPairsOnRandomTexts) {
           << "told twice";
     }
     const auto words = transcription::plainWords(text);
-    Found expected;
-    for (int k = 1; k <= levels; ++k) {
-      const AllReversePairs table(words, k, params.tolerance);
-      for (WordIndex a = 0; a < words.size(); ++a) {
-        if (words[a].level != 0) continue;
-        for (WordIndex b = 0; b < a; ++b) {
-          if (table.at(a, b) >= params.min_n[static_cast<std::size_t>(k - 1)]) {
-            expected.emplace(std::make_pair(a, b), std::make_pair(k, table.at(a, b)));
-          }
-        }
-      }
-    }
+    const auto expected = random_texts::matchedPairs<AllReversePairs>(words, levels, params);
     ASSERT_EQ(got, expected);
     for (const auto& [pair, how] : expected) {
       const auto chain = longestNgram(text, params.tolerance, {pair.first, pair.second}, how.first,
@@ -208,7 +174,7 @@ TEST(ReverseNgramMatcher, skippedRunsCanBeMatchedLater) {
     text.startRun();
     const Position begin = text.positions();
     writeBothWays(text, 30, rng);
-    Found expected, got;
+    random_texts::MatchedPairs expected, got;
     for (const NgramMatch& m : all.update()) {
       if (text.last(m.newer) >= begin) expected[{m.newer, m.older}] = {m.levels, m.n};
     }

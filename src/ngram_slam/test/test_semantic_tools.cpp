@@ -1,6 +1,5 @@
 // The tools of semantic classes as a shell sees them, in a small made-up building.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -12,16 +11,16 @@
 #include "hyselam_sim/generate_corridors.hpp"
 #include "hyselam_sim/generate_plan.hpp"
 #include "hyselam_sim/simulation.hpp"
+#include "tool_test.hpp"
 
 using hyselam::testing::fileBytes;
-using hyselam::testing::TemporaryDirectory;
 using hyselam::testing::writeFile;
 
 namespace {
 
-struct SemanticTools : testing::Test {
+struct SemanticTools : ToolTest {
   static void SetUpTestSuite() {
-    directory = new TemporaryDirectory;
+    ToolTest::SetUpTestSuite();
     hyselam_sim::CorridorParams params;
     params.lines = 3;
     params.legs = 16;
@@ -36,32 +35,10 @@ struct SemanticTools : testing::Test {
     bare.floor_kind.clear();
     writeFile(*directory / "bare.yaml", toYaml(bare));
   }
-  static void TearDownTestSuite() {
-    delete directory;
-    directory = nullptr;
-  }
-  int run(const std::string& command) {
-    const int status = std::system(
-        (std::string(HYSELAM_TOOLS) + "/" + command + " >" + d / "stdout" + " 2>" + d / "stderr")
-            .c_str());
-    errors = fileBytes(d / "stderr");
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-  void expectRefused(const std::string& command, const std::string& part) {
-    EXPECT_EQ(run(command), 2) << command << "\n" << errors;
-    EXPECT_EQ(errors.rfind("error: ", 0), 0u) << errors;
-    EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 1) << errors;
-    EXPECT_NE(errors.find(part), std::string::npos) << errors;
-  }
   std::string evaluate() const {
     return "evaluate_semantics " + d / "run.bag" + " --plan " + d / "plan.yaml";
   }
-
-  static TemporaryDirectory* directory;
-  TemporaryDirectory& d = *directory;
-  std::string errors;
 };
-TemporaryDirectory* SemanticTools::directory = nullptr;
 
 }  // namespace
 

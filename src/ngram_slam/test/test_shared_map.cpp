@@ -20,12 +20,8 @@ namespace {
 
 using hyselam::Pose2;
 
-struct Logs {
-  hyselam::RobotLog first = visit(5, 3, {}), second = visit(5, 4, {30.0, -7.0, 2.5}),
-                    other = visit(11, 5, {5.0, 5.0, 1.0});
-};
-const Logs& logs() {
-  static const Logs l;
+const ThreeVisits& logs() {
+  static const ThreeVisits l;
   return l;
 }
 
@@ -90,9 +86,8 @@ void expectSame(const SlamState& told, const SlamEngine& engine) {
 
 // ---- parameters
 
-SharedMapServerParams load(const std::map<std::string, XmlRpc::XmlRpcValue>& values) {
-  hyselam::ParamLoader loader(std::make_shared<hyselam::MapParamSource>(values));
-  return loadSharedMapParams(loader);
+SharedMapServerParams load(const Values& values) {
+  return loadFrom(loadSharedMapParams, values);
 }
 
 TEST(SharedMapParameters, RefusesWhatCannotBe) {
@@ -109,10 +104,7 @@ TEST(SharedMapParameters, RefusesWhatCannotBe) {
 TEST(SharedMapParameters, ReadmeHasThemAll) {
   const std::string readme = written("README.md");
   const std::string section = readme.substr(readme.find("## SharedMap"));
-  hyselam::ParamLoader loader(
-      std::make_shared<hyselam::MapParamSource>(std::map<std::string, XmlRpc::XmlRpcValue>{}));
-  loadSharedMapParams(loader);
-  const auto all = valuesOf(loader.table());
+  const auto all = defaultsOf(loadSharedMapParams);
   EXPECT_GT(all.size(), 15U);
   for (const auto& [name, value] : all) {
     if (name.find('/') != std::string::npos) continue;  // in docs/parameters.md

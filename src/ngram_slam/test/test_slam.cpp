@@ -11,12 +11,11 @@
 #include "hyselam_common/rng.hpp"
 #include "hyselam_common/testing/files.hpp"
 #include "hyselam_common/trajectory_io.hpp"
-#include "hyselam_sim/generate_corridors.hpp"
-#include "hyselam_sim/simulation.hpp"
 #include "ngram_slam/slam/loop_tasks.hpp"
 #include "ngram_slam/slam/region_graph.hpp"
 #include "ngram_slam/slam/slam_engine.hpp"
 #include "ngram_slam/slam/slam_score.hpp"
+#include "visits.hpp"
 
 namespace ngram_slam {
 namespace {
@@ -26,30 +25,13 @@ using hyselam::Pose2;
 /// A round through corridors with odometry that is off by metres in the end.
 const hyselam::RobotLog& building() {
   static const hyselam::RobotLog log = [] {
-    hyselam_sim::CorridorParams corridors;
-    corridors.lines = 3;
-    corridors.loops = 1.0;
-    corridors.legs = 26;
-    const auto made = hyselam_sim::generateCorridors(5, corridors);
-    hyselam_sim::SimulationParams params;
-    params.scan_rate = 5.0;
+    const auto made = loopedCorridors(5, 3, 26);
+    auto params = atScanRate(5.0);
     params.odometry.sigma = 0.01;
     params.odometry.base_scale = 1.03;
     return hyselam_sim::simulate(made.plan, made.route, 3, params).log;
   }();
   return log;
-}
-
-void feed(SlamEngine* engine, const hyselam::RobotLog& log, std::size_t begin, std::size_t end) {
-  for (std::size_t i = begin; i < std::min(end, log.scans.size()); ++i) {
-    engine->add(log.scans[i], *hyselam::poseAt(log.odometry, log.scans[i].stamp, 1.0));
-    while (const auto job = engine->takeJob()) engine->apply(runJob(*job));
-  }
-}
-
-void finish(SlamEngine* engine) {
-  engine->endRun();
-  while (const auto job = engine->takeFinalJob()) engine->apply(runJob(*job));
 }
 
 SlamEngine mapped(LoopClosureMode loops, std::size_t scans = 100000) {

@@ -1,6 +1,5 @@
 // slam_offline as a shell sees it, in a small made-up building.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -13,50 +12,31 @@
 #include "hyselam_common/ros/bag_io.hpp"
 #include "hyselam_common/testing/files.hpp"
 #include "hyselam_common/trajectory_io.hpp"
-#include "hyselam_sim/generate_corridors.hpp"
-#include "hyselam_sim/simulation.hpp"
 #include "loop_table.hpp"
+#include "looped_corridors.hpp"
 #include "reference_poses.hpp"
+#include "tool_test.hpp"
 
 using hyselam::testing::fileBytes;
-using hyselam::testing::TemporaryDirectory;
 using hyselam::testing::writeFile;
 
 namespace {
 
-struct SlamOffline : testing::Test {
+struct SlamOffline : ToolTest {
   static void SetUpTestSuite() {
-    directory = new TemporaryDirectory;
-    hyselam_sim::CorridorParams corridors;
-    corridors.lines = 2;
-    corridors.loops = 1.0;
-    corridors.legs = 10;
-    const auto building = hyselam_sim::generateCorridors(4, corridors);
-    hyselam_sim::SimulationParams params;
-    params.scan_rate = 4.0;
-    auto log = hyselam_sim::simulate(building.plan, building.route, 4, params).log;
+    ToolTest::SetUpTestSuite();
+    const auto building = ngram_slam::loopedCorridors(4, 2, 10);
+    auto log =
+        hyselam_sim::simulate(building.plan, building.route, 4, ngram_slam::atScanRate(4.0)).log;
     scans = log.scans.size();
     hyselam::writeBag(*directory / "run.bag", log);
     log.odometry.erase(log.odometry.begin() + 1, log.odometry.end());
     log.odometry[0].stamp = 1e6;
     hyselam::writeBag(*directory / "late.bag", log);
   }
-  static void TearDownTestSuite() {
-    delete directory;
-    directory = nullptr;
-  }
-  int run(const std::string& arguments) {
-    const int status = std::system((std::string(HYSELAM_TOOLS) + "/slam_offline " + arguments +
-                                    " >" + d / "stdout" + " 2>" + d / "stderr")
-                                       .c_str());
-    errors = fileBytes(d / "stderr");
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
+  int run(const std::string& arguments) { return ToolTest::run("slam_offline " + arguments); }
   void expectRefused(const std::string& arguments, const std::string& part) {
-    EXPECT_EQ(run(arguments), 2) << arguments << "\n" << errors;
-    EXPECT_EQ(errors.rfind("error: ", 0), 0u) << errors;
-    EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 1) << errors;
-    EXPECT_NE(errors.find(part), std::string::npos) << errors;
+    ToolTest::expectRefused("slam_offline " + arguments, part);
   }
   /// The recording as a CARMEN log.
   static std::string carmenLog() {
@@ -79,13 +59,9 @@ struct SlamOffline : testing::Test {
     return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
   }
 
-  static TemporaryDirectory* directory;
   static std::size_t scans;
-  const TemporaryDirectory& d = *directory;
-  std::string errors;
 };
 
-TemporaryDirectory* SlamOffline::directory = nullptr;
 std::size_t SlamOffline::scans = 0;
 
 TEST_F(SlamOffline, writesTheFilesOfTheContract) {

@@ -11,24 +11,15 @@
 #include "written_parameters.hpp"
 
 using namespace ngram_slam;  // NOLINT: a test, not a header
-using hyselam::MapParamSource;
-using hyselam::ParamLoader;
-using Values = std::map<std::string, XmlRpc::XmlRpcValue>;
 
 namespace {
 
-SlamServerParams load(const Values& values, std::string* table = nullptr) {
-  ParamLoader loader(std::make_shared<MapParamSource>(values));
-  const SlamServerParams p = loadSlamParams(loader);
-  if (table != nullptr) *table = loader.table();
-  return p;
+SlamServerParams load(const Values& values) {
+  return loadFrom(loadSlamParams, values);
 }
 
-/// Names and defaults.
 std::map<std::string, std::string> defaults() {
-  std::string table;
-  load({}, &table);
-  return valuesOf(table);
+  return defaultsOf(loadSlamParams);
 }
 
 }  // namespace

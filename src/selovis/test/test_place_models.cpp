@@ -287,7 +287,7 @@ TEST(PlaceModel, ChangedFilesAreRefusedWithTheirName) {
 
 /// Format 1 had neither headers nor a byte order; it was written on little-endian machines.
 TEST(PlaceModel, FormerFormatIsReadAndWrittenAsTheNewOne) {
-  const PlaceModel model = loadPlaceModel(SELOVIS_TEST_DATA "/model_format_1");
+  const PlaceModel model = loadPlaceModel(HYSELAM_PACKAGE_DIR "/test/data/model_format_1");
   EXPECT_EQ(model.transitions.places, (std::vector<std::string>{"hall", "lab"}));
   EXPECT_EQ(model.samples.values, (std::vector<float>{0.1f, 0.2f, 0.8f, 0.9f}));
   EXPECT_EQ(model.samples.places, (std::vector<int>{0, 0, 1, 1}));
@@ -305,7 +305,7 @@ TEST(PlaceModel, FormerFormatIsReadAndWrittenAsTheNewOne) {
 }
 
 TEST(PlaceModel, WhereTheCameraErrsIsSavedBesideTheModelItBelongsTo) {
-  const PlaceModel former = loadPlaceModel(SELOVIS_TEST_DATA "/model_format_1");
+  const PlaceModel former = loadPlaceModel(HYSELAM_PACKAGE_DIR "/test/data/model_format_1");
   EXPECT_EQ(former.reliability.size(), 0u) << "older models have none";
   TemporaryDirectory folder;
   savePlaceModel(former, folder / "m");

@@ -10,6 +10,7 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/testing/files.hpp"
+#include "hyselam_common/testing/program_run.hpp"
 #include "selovis/learning/labeled_frames.hpp"
 #include "selovis/learning/place_model.hpp"
 
@@ -19,19 +20,12 @@ namespace {
 using hyselam::InputError;
 using hyselam::testing::fileBytes;
 using hyselam::testing::messageOf;
+using hyselam::testing::ProgramRun;
 using hyselam::testing::TemporaryDirectory;
 using hyselam::testing::writeFile;
 
-struct Result {
-  int status;
-  std::string error;
-};
-
-Result run(const TemporaryDirectory& folder, const std::string& command) {
-  const std::string err = folder / "stderr";
-  const int status =
-      std::system((std::string(SELOVIS_TOOLS) + "/" + command + " > /dev/null 2> " + err).c_str());
-  return {WEXITSTATUS(status), fileBytes(err)};
+ProgramRun run(const std::string& command) {
+  return hyselam::testing::runProgram(std::string(HYSELAM_TOOLS) + "/" + command);
 }
 
 /// Two rooms, ten frames each, as PNG; list "labels.csv".
@@ -51,25 +45,25 @@ void makeTour(const TemporaryDirectory& folder) {
 TEST(Tools, TrainAndEvaluateWriteTheirFiles) {
   TemporaryDirectory f;
   makeTour(f);
-  ASSERT_EQ(run(f, "train --labels " + (f / "labels.csv") +
-                       " --descriptor LBPbyHSV-U8N --kernel linear --libsvm " + (f / "x.svm") +
-                       " --out " + (f / "m"))
+  ASSERT_EQ(run("train --labels " + (f / "labels.csv") +
+                " --descriptor LBPbyHSV-U8N --kernel linear --libsvm " + (f / "x.svm") + " --out " +
+                (f / "m"))
                 .status,
             0);
   EXPECT_NE(fileBytes(f / "x.svm").find("svm_type c_svc"), std::string::npos);
   // Without a support vector machine the file stays what it was.
-  EXPECT_EQ(run(f, "train --labels " + (f / "labels.csv") + " --libsvm " + (f / "x.svm") +
-                       " --out " + (f / "n"))
+  EXPECT_EQ(run("train --labels " + (f / "labels.csv") + " --libsvm " + (f / "x.svm") + " --out " +
+                (f / "n"))
                 .status,
             2);
   EXPECT_NE(fileBytes(f / "x.svm").find("svm_type c_svc"), std::string::npos);
   writeFile(f / "map.csv", "hall,kitchen\n");
   for (const std::string filter : {"none", "lowpass", "markov", "bayes"}) {
-    const Result r =
-        run(f, "evaluate " + (f / "m") + " --labels " + (f / "labels.csv") + " --filter " + filter +
-                   " --topology " + (f / "map.csv") + " --json " + (f / "r.json") +
-                   " --predictions " + (f / "p.csv") + " --plots " + (f / "plots"));
-    ASSERT_EQ(r.status, 0) << r.error;
+    const ProgramRun r =
+        run("evaluate " + (f / "m") + " --labels " + (f / "labels.csv") + " --filter " + filter +
+            " --topology " + (f / "map.csv") + " --json " + (f / "r.json") + " --predictions " +
+            (f / "p.csv") + " --plots " + (f / "plots"));
+    ASSERT_EQ(r.status, 0) << r.errors;
     const auto j = nlohmann::json::parse(fileBytes(f / "r.json"));
     EXPECT_GE(j["accuracy"].get<double>(), 0.8) << filter;
     EXPECT_EQ(j["accuracy_frame_alone"], 1.0);
@@ -96,10 +90,10 @@ TEST(Tools, EvaluateWarnsWherePosesCannotBeUsed) {
     }
     writeFile(f / "posed.csv", list);
     const std::string m = f / "m", labels = " --labels " + (f / "posed.csv");
-    EXPECT_EQ(run(f, "train --descriptor LGOP --kernel exemplar --out " + m + labels).status, 0);
-    const Result r = run(f, "evaluate " + m + labels + " --filter " + filter);
-    EXPECT_EQ(r.status, 0) << r.error;
-    return r.error;
+    EXPECT_EQ(run("train --descriptor LGOP --kernel exemplar --out " + m + labels).status, 0);
+    const ProgramRun r = run("evaluate " + m + labels + " --filter " + filter);
+    EXPECT_EQ(r.status, 0) << r.errors;
+    return r.errors;
   };
   EXPECT_NE(evaluate("", "poses").find("warning: the filter poses has no odometry"),
             std::string::npos);
@@ -111,8 +105,8 @@ TEST(Tools, TwoTrainingsWriteTheSameBytes) {
   TemporaryDirectory f;
   makeTour(f);
   for (const std::string out : {"a", "b"}) {
-    ASSERT_EQ(run(f, "train --labels " + (f / "labels.csv") +
-                         " --descriptor LBPbyHSV-U8N --kernel rbf --out " + (f / out))
+    ASSERT_EQ(run("train --labels " + (f / "labels.csv") +
+                  " --descriptor LBPbyHSV-U8N --kernel rbf --out " + (f / out))
                   .status,
               0);
   }
@@ -122,20 +116,20 @@ TEST(Tools, TwoTrainingsWriteTheSameBytes) {
 TEST(Tools, UnknownPlacesAreReportedAndCanBeAdded) {
   TemporaryDirectory f;
   makeTour(f);
-  ASSERT_EQ(run(f, "train --labels " + (f / "labels.csv") +
-                       " --descriptor LGOP --kernel exemplar --out " + (f / "m"))
+  ASSERT_EQ(run("train --labels " + (f / "labels.csv") +
+                " --descriptor LGOP --kernel exemplar --out " + (f / "m"))
                 .status,
             0);
   writeFile(f / "more.csv", "3.png,attic\n4.png,attic\n");
-  ASSERT_EQ(run(f, "evaluate " + (f / "m") + " --labels " + (f / "more.csv") + " --json " +
-                       (f / "r.json"))
-                .status,
-            0);
+  ASSERT_EQ(
+      run("evaluate " + (f / "m") + " --labels " + (f / "more.csv") + " --json " + (f / "r.json"))
+          .status,
+      0);
   const auto j = nlohmann::json::parse(fileBytes(f / "r.json"));
   EXPECT_EQ(j["accuracy"], 0.0);
   EXPECT_EQ(j["unknown_places"][0], "attic");
   ASSERT_EQ(
-      run(f, "train --add --labels " + (f / "more.csv") + " --kernel exemplar --out " + (f / "m"))
+      run("train --add --labels " + (f / "more.csv") + " --kernel exemplar --out " + (f / "m"))
           .status,
       0);
   EXPECT_EQ(loadPlaceModel(f / "m").transitions.places,
@@ -148,11 +142,7 @@ TEST(Tools, BadInputEndsWithOneLineAndStatus2) {
   const std::string labels = f / "labels.csv",
                     train = "train --out " + (f / "m") + " --kernel linear ";
   const auto refused = [&](const std::string& command, const std::string& says) {
-    const Result r = run(f, command);
-    EXPECT_EQ(r.status, 2) << command;
-    EXPECT_EQ(r.error.compare(0, 7, "error: "), 0) << r.error;
-    EXPECT_EQ(std::count(r.error.begin(), r.error.end(), '\n'), 1) << r.error;
-    EXPECT_NE(r.error.find(says), std::string::npos) << r.error;
+    EXPECT_TRUE(hyselam::testing::refused(run(command), says)) << command;
   };
   refused(train + "--labels " + (f / "none.csv"), "none.csv");
   refused(train + "--labels " + labels + " --descriptor LBPbyHSV-Q8N", "LBPbyHSV-Q8N");
@@ -164,7 +154,7 @@ TEST(Tools, BadInputEndsWithOneLineAndStatus2) {
   refused(train + "--labels " + (f / "one.csv"), "two places");
   refused(train + "--labels " + labels + " --descriptor sLBP-\\(N\\)LRF20", "distances");
   refused("evaluate " + (f / "m") + " --labels " + labels, "model.json");
-  ASSERT_EQ(run(f, train + "--descriptor LBPbyHSV-U8N --labels " + labels).status, 0);
+  ASSERT_EQ(run(train + "--descriptor LBPbyHSV-U8N --labels " + labels).status, 0);
   refused("evaluate " + (f / "m") + " --labels " + labels + " --filter median", "median");
   refused("evaluate " + (f / "m") + " --labels " + labels + " --topology " + (f / "0.png"),
           "0.png");

@@ -40,9 +40,7 @@ hyselam_msgs::FsdObservation toMsg(const FsdObservation& observation,
   constexpr float kUndefined = std::numeric_limits<float>::quiet_NaN();
   hyselam_msgs::FsdObservation msg;
   msg.header = header;
-  msg.base_in_odom.x = observation.base_in_odom.x;
-  msg.base_in_odom.y = observation.base_in_odom.y;
-  msg.base_in_odom.theta = observation.base_in_odom.theta;
+  msg.base_in_odom = hyselam::toPose2dMsg(observation.base_in_odom);
   for (std::size_t k = 0; k < observation.readings.size(); ++k) {
     const FsdReading& reading = observation.readings[k];
     msg.kernel_names.push_back(toString(kernels[k].profile));

@@ -357,25 +357,14 @@ void LocalizationServer::savePose(const LocalizationResult& result) {
 
 void LocalizationServer::onInitialPose(
     const geometry_msgs::PoseWithCovarianceStamped::ConstPtr& msg) {
-  InitialPose pose;
-  try {
-    pose = hyselam::initialPoseFromMsg(*msg, params_.global_frame_id,
-                                       initial_pose_subscriber_.getTopic());
-  } catch (const hyselam::InputError& e) {
-    ROS_ERROR_STREAM(log_name_ << " initial pose ignored: " << e.what());
-    return;
-  }
+  const auto pose = hyselam::initialPoseNow(*msg, params_.global_frame_id,
+                                            initial_pose_subscriber_.getTopic(), input_, log_name_);
+  if (!pose) return;
   if (msg->header.frame_id.empty()) {
     ROS_WARN_STREAM(log_name_ << " initial pose without frame_id, taken as "
                               << params_.global_frame_id);
   }
-  // The robot may have moved on while a person pointed at the map.
-  if (!msg->header.stamp.isZero()) {
-    if (const auto motion = input_.motionSince(msg->header.stamp)) {
-      pose.base_in_map = pose.base_in_map * *motion;
-    }
-  }
-  if (startAt(pose) && params_.force_update_after_initialpose) force_update_ = true;
+  if (startAt(*pose) && params_.force_update_after_initialpose) force_update_ = true;
 }
 
 bool LocalizationServer::startAt(const InitialPose& pose) {

@@ -36,6 +36,19 @@ inline bool inside(const Cells& m, int x, int y) {
   return x >= 0 && y >= 0 && x < m.width && y < m.height;
 }
 
+/// Of both algorithms: the neighbors that were not processed yet.
+inline void pushNeighbors(const Cells& m, int x, int y, std::vector<char>* processed,
+                          std::queue<std::pair<int, int>>* q) {
+  for (const Offset n : {Offset{0, 1}, Offset{1, 0}, Offset{0, -1}, Offset{-1, 0}}) {
+    const int nx = x + n.dx, ny = y + n.dy;
+    if (!inside(m, nx, ny)) continue;
+    char& mark = (*processed)[static_cast<std::size_t>(ny * m.width + nx)];
+    if (mark != 0) continue;
+    mark = 1;
+    q->push({nx, ny});
+  }
+}
+
 /// Alg. 3.1. `unknown_is_free` gives the upper bound.
 inline Fsd freeSpaceDensity(const Cells& m, int x0, int y0, const fsd_localization::Kernel& kernel,
                             bool unknown_is_free = false) {
@@ -54,14 +67,7 @@ inline Fsd freeSpaceDensity(const Cells& m, int x0, int y0, const fsd_localizati
     const Cells::State s = m.at(x, y);
     if (s == Cells::kFree || (unknown_is_free && s == Cells::kUnknown)) {
       result.soft += kernel.weight(x - x0, y - y0);
-      for (const Offset n : {Offset{0, 1}, Offset{1, 0}, Offset{0, -1}, Offset{-1, 0}}) {
-        const int nx = x + n.dx, ny = y + n.dy;
-        if (!inside(m, nx, ny)) continue;
-        char& mark = processed[static_cast<std::size_t>(ny * m.width + nx)];
-        if (mark != 0) continue;
-        mark = 1;
-        q.push({nx, ny});
-      }
+      pushNeighbors(m, x, y, &processed, &q);
     } else if (s == Cells::kUnknown) {
       undefined = true;
     }
@@ -97,14 +103,7 @@ inline int frontiers(const Cells& m, int x0, int y0, int h, double min_share) {
     if (m.at(x, y) != Cells::kFree) continue;
     const double d = std::sqrt(static_cast<double>((x - x0) * (x - x0) + (y - y0) * (y - y0)));
     if (d < h) {
-      for (const Offset n : {Offset{0, 1}, Offset{1, 0}, Offset{0, -1}, Offset{-1, 0}}) {
-        const int nx = x + n.dx, ny = y + n.dy;
-        if (!inside(m, nx, ny)) continue;
-        char& mark = processed[static_cast<std::size_t>(ny * m.width + nx)];
-        if (mark != 0) continue;
-        mark = 1;
-        q.push({nx, ny});
-      }
+      pushNeighbors(m, x, y, &processed, &q);
     } else {
       border.push_back({x, y});
     }

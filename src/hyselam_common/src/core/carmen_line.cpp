@@ -157,26 +157,24 @@ bool isOldForm(const std::vector<std::string_view>& fields, std::size_t tail) {
          *n + 2.0 + static_cast<double>(tail) == static_cast<double>(fields.size());
 }
 
-void parseRawLaser(FieldReader& in, bool old, CarmenLine* line) {
+void parseReadings(FieldReader& in, bool old, LaserScan* scan) {
   if (old) {
     const std::size_t n = in.count("the number of readings");
-    in.ranges(n, 1.0, &line->scan);
-    if (in.ok()) assumeHalfCircle(&line->scan);
+    in.ranges(n, 1.0, scan);
+    if (in.ok()) assumeHalfCircle(scan);
   } else {
-    parseConfiguredReadings(in, &line->scan);
+    parseConfiguredReadings(in, scan);
   }
+}
+
+void parseRawLaser(FieldReader& in, bool old, CarmenLine* line) {
+  parseReadings(in, old, &line->scan);
   in.times(line);
   in.end();
 }
 
 void parseRobotLaser(FieldReader& in, bool old, bool with_motion, CarmenLine* line) {
-  if (old) {
-    const std::size_t n = in.count("the number of readings");
-    in.ranges(n, 1.0, &line->scan);
-    if (in.ok()) assumeHalfCircle(&line->scan);
-  } else {
-    parseConfiguredReadings(in, &line->scan);
-  }
+  parseReadings(in, old, &line->scan);
   const Pose2 laser = in.pose("the laser pose");
   line->odometry = in.pose("the robot pose");
   if (with_motion) {

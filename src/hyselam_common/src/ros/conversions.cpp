@@ -79,6 +79,20 @@ tf2::Transform spatialFromMsg(const geometry_msgs::Transform& t, const std::stri
                         tf2::Vector3(t.translation.x, t.translation.y, t.translation.z));
 }
 
+std_msgs::String toStringMsg(const std::string& text) {
+  std_msgs::String msg;
+  msg.data = text;
+  return msg;
+}
+
+geometry_msgs::Pose2D toPose2dMsg(const Pose2& pose) {
+  geometry_msgs::Pose2D msg;
+  msg.x = pose.x;
+  msg.y = pose.y;
+  msg.theta = pose.theta;
+  return msg;
+}
+
 geometry_msgs::Pose toPoseMsg(const Pose2& pose) {
   geometry_msgs::Pose msg;
   msg.position.x = pose.x;

@@ -49,4 +49,23 @@ InitialPose initialPoseFromMsg(const geometry_msgs::PoseWithCovarianceStamped& m
   return pose;
 }
 
+std::optional<InitialPose> initialPoseNow(const geometry_msgs::PoseWithCovarianceStamped& msg,
+                                          const std::string& global_frame,
+                                          const std::string& source, const ScanInput& input,
+                                          const std::string& log_name) {
+  InitialPose pose;
+  try {
+    pose = initialPoseFromMsg(msg, global_frame, source);
+  } catch (const InputError& e) {
+    ROS_ERROR_STREAM(log_name << " initial pose ignored: " << e.what());
+    return std::nullopt;
+  }
+  if (!msg.header.stamp.isZero()) {
+    if (const auto motion = input.motionSince(msg.header.stamp)) {
+      pose.base_in_map = pose.base_in_map * *motion;
+    }
+  }
+  return pose;
+}
+
 }  // namespace hyselam

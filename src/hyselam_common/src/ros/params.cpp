@@ -43,6 +43,14 @@ std::optional<double> asDouble(XmlRpcValue value) {
   return std::nullopt;
 }
 
+/// Reads a whole number that may be written as a floating point one.
+std::optional<int> asWhole(XmlRpcValue value) {
+  const auto number = asDouble(std::move(value));
+  const bool whole = number && std::abs(*number) <= std::numeric_limits<int>::max() &&
+                     *number == std::trunc(*number);
+  return whole ? std::optional<int>(static_cast<int>(*number)) : std::nullopt;
+}
+
 /// A meaning that begins with its unit: "[m] ...".
 ParameterInfo infoOf(const std::string& name, const std::string& meaning) {
   ParameterInfo info;
@@ -198,38 +206,30 @@ void ParamLoader::visit(const ParameterInfo& info, std::string& member) {
   accept(info, member, value);
 }
 
-void ParamLoader::visit(const ParameterInfo& info, std::vector<double>& member) {
-  std::vector<double> value = member;
+template <typename T>
+void ParamLoader::visitArray(const ParameterInfo& info, std::vector<T>& member,
+                             std::optional<T> (*element)(XmlRpcValue)) {
+  std::vector<T> value = member;
   if (auto given = read(info.name)) {
     if (given->getType() != XmlRpcValue::TypeArray) {
       refuse(info, parameterRow(info, member), *given);
     }
     value.clear();
     for (int i = 0; i < given->size(); ++i) {
-      const auto element = asDouble((*given)[i]);
-      if (!element) refuse(info, parameterRow(info, member), *given);
-      value.push_back(*element);
+      const auto one = element((*given)[i]);
+      if (!one) refuse(info, parameterRow(info, member), *given);
+      value.push_back(*one);
     }
   }
   accept(info, member, value);
 }
 
+void ParamLoader::visit(const ParameterInfo& info, std::vector<double>& member) {
+  visitArray(info, member, &asDouble);
+}
+
 void ParamLoader::visit(const ParameterInfo& info, std::vector<int>& member) {
-  std::vector<int> value = member;
-  if (auto given = read(info.name)) {
-    if (given->getType() != XmlRpcValue::TypeArray) {
-      refuse(info, parameterRow(info, member), *given);
-    }
-    value.clear();
-    for (int i = 0; i < given->size(); ++i) {
-      const auto element = asDouble((*given)[i]);
-      const bool whole = element && std::abs(*element) <= std::numeric_limits<int>::max() &&
-                         *element == std::trunc(*element);
-      if (!whole) refuse(info, parameterRow(info, member), *given);
-      value.push_back(static_cast<int>(*element));
-    }
-  }
-  accept(info, member, value);
+  visitArray(info, member, &asWhole);
 }
 
 void ParamLoader::visitRenamed(const std::string& old_name, const std::string& new_name) {

@@ -184,12 +184,7 @@ bool isSettled(Statement& s, const DescribedConnection& known, const Placement& 
 }  // namespace
 
 DescribedRelation relationOf(RelationKind kind, Id a, Id b, Id c) {
-  DescribedRelation relation;
-  relation.kind = kind;
-  relation.a = a;
-  relation.b = b;
-  relation.c = c;
-  return relation;
+  return {kind, a, b, c};
 }
 
 void recordConnection(Statement& s, const Placement& placement) {

@@ -38,10 +38,7 @@ void ObjectEngineParams::validate() const {
 }
 
 ObjectEngineParams loadObjectEngineParams(hyselam::ParamLoader& loader) {
-  ObjectEngineParams params;
-  params.describe(loader);
-  params.validate();
-  return params;
+  return hyselam::loadDescribed<ObjectEngineParams>(loader);
 }
 
 ObjectEngineServer::ObjectEngineServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh)
@@ -213,11 +210,8 @@ bool ObjectEngineServer::onQuery(hyselam_msgs::QueryObjects::Request& request,
 }
 
 void ObjectEngineServer::publishText(const std::string& text) {
-  std_msgs::String msg;
-  msg.data = text;
-  publishers_.text.publish(msg);
-  msg.data = "robot: " + text;
-  publishers_.conversation.publish(msg);
+  publishers_.text.publish(hyselam::toStringMsg(text));
+  publishers_.conversation.publish(hyselam::toStringMsg("robot: " + text));
 }
 
 void ObjectEngineServer::onPlace(const hyselam_msgs::PlaceState::ConstPtr& msg) {

@@ -12,19 +12,14 @@
 namespace hyselam_topo {
 
 void TopoEngineServer::say(const std::string& sentence) {
-  std_msgs::String msg;
-  msg.data = sentence;
-  publishers_.text.publish(msg);
-  msg.data = "robot: " + sentence;
-  publishers_.conversation.publish(msg);
+  publishers_.text.publish(hyselam::toStringMsg(sentence));
+  publishers_.conversation.publish(hyselam::toStringMsg("robot: " + sentence));
   ROS_INFO_STREAM(who_ << " says: " << sentence);
 }
 
 void TopoEngineServer::publishHumanText(const std::string& text) {
   ++input_.texts;
-  std_msgs::String msg;
-  msg.data = "human: " + text;
-  publishers_.conversation.publish(msg);
+  publishers_.conversation.publish(hyselam::toStringMsg("human: " + text));
 }
 
 void TopoEngineServer::act(const Reply& reply) {
@@ -175,9 +170,7 @@ void TopoEngineServer::publishOpen() {
   const auto publish = [](const std::string& text, Told& told) {
     if (told.text && *told.text == text) return;
     told.text = text;
-    std_msgs::String msg;
-    msg.data = text;
-    told.publisher.publish(msg);
+    told.publisher.publish(hyselam::toStringMsg(text));
   };
   publish(asks ? dialogue_.openQuestion() : "", publishers_.open_question);
   publish(dialogue_.nextUndo(), publishers_.next_undo);
@@ -192,11 +185,7 @@ void TopoEngineServer::publishPlace() {
   msg.place = robot.place;
   msg.previous = robot.previous;
   msg.in_doorway = robot.in_doorway;
-  if (robot.has_pose) {
-    msg.pose.x = robot.pose.x;
-    msg.pose.y = robot.pose.y;
-    msg.pose.theta = robot.pose.theta;
-  }
+  if (robot.has_pose) msg.pose = hyselam::toPose2dMsg(robot.pose);
   if (const Place* place = dialogue_.map().findPlace(robot.place)) {
     const auto names = namesOf(*place);
     if (!names.empty()) msg.name = names.front();

@@ -12,16 +12,10 @@ namespace {
 
 constexpr double kNotKnown = -1.0;
 
-geometry_msgs::Point pointMsg(const Point3& p) {
-  geometry_msgs::Point msg;
-  msg.x = p.x;
-  msg.y = p.y;
-  msg.z = p.z;
-  return msg;
-}
-
-geometry_msgs::Vector3 vectorMsg(const Point3& p) {
-  geometry_msgs::Vector3 msg;
+/// geometry_msgs/Point or Vector3.
+template <typename Msg>
+Msg xyzMsg(const Point3& p) {
+  Msg msg;
   msg.x = p.x;
   msg.y = p.y;
   msg.z = p.z;
@@ -81,9 +75,9 @@ hyselam_msgs::Wall toMsg(const Wall& wall) {
   hyselam_msgs::Wall msg;
   msg.id = wall.id;
   msg.kind = static_cast<std::uint8_t>(wall.kind);
-  msg.position = pointMsg(wall.position);
+  msg.position = xyzMsg<geometry_msgs::Point>(wall.position);
   covarianceMsg(wall.position_covariance, &msg.position_covariance);
-  msg.normal = vectorMsg(wall.normal);
+  msg.normal = xyzMsg<geometry_msgs::Vector3>(wall.normal);
   covarianceMsg(wall.normal_covariance, &msg.normal_covariance);
   msg.length = wall.length;
   msg.height = wall.height;
@@ -99,7 +93,7 @@ namespace {
 hyselam_msgs::VisualSignature toMsg(const VisualSignature& signature) {
   hyselam_msgs::VisualSignature msg;
   msg.appearance = toMsg(signature.appearance);
-  msg.position = pointMsg(signature.position);
+  msg.position = xyzMsg<geometry_msgs::Point>(signature.position);
   covarianceMsg(signature.position_covariance, &msg.position_covariance);
   msg.heading = signature.heading.value_or(std::numeric_limits<double>::quiet_NaN());
   msg.aperture_x = signature.aperture_x;
@@ -118,7 +112,7 @@ hyselam_msgs::Place toMsg(const Place& place) {
   for (const VisualSignature& s : place.signatures) msg.signatures.push_back(toMsg(s));
   msg.area = place.area;
   msg.has_centre = place.centre.has_value();
-  if (place.centre) msg.centre = pointMsg(*place.centre);
+  if (place.centre) msg.centre = xyzMsg<geometry_msgs::Point>(*place.centre);
   for (const hyselam::Point2& p : place.outline) {
     msg.outline_x.push_back(p.x);
     msg.outline_y.push_back(p.y);
@@ -132,9 +126,9 @@ hyselam_msgs::Door toMsg(const Door& door) {
   msg.id = door.id;
   msg.real = door.real;
   msg.state = static_cast<std::uint8_t>(door.state);
-  msg.position = pointMsg(door.position);
+  msg.position = xyzMsg<geometry_msgs::Point>(door.position);
   covarianceMsg(door.position_covariance, &msg.position_covariance);
-  msg.normal = vectorMsg(door.normal);
+  msg.normal = xyzMsg<geometry_msgs::Vector3>(door.normal);
   msg.width = door.width;
   msg.height = door.height;
   if (door.appearance) msg.appearance = {toMsg(*door.appearance)};
@@ -305,9 +299,7 @@ hyselam_msgs::AugmentedTopologicalMap toMsg(const AugmentedTopologicalMap& map) 
     msg.grid.width = static_cast<std::uint32_t>(g.width);
     msg.grid.height = static_cast<std::uint32_t>(g.height);
     msg.grid.resolution = g.resolution;
-    msg.grid.origin.x = g.origin.x;
-    msg.grid.origin.y = g.origin.y;
-    msg.grid.origin.theta = g.origin.theta;
+    msg.grid.origin = hyselam::toPose2dMsg(g.origin);
     msg.grid.labels = map.grid->labels;
     msg.grid.places = map.grid->places;
   }

@@ -10,18 +10,6 @@ namespace ngram_slam {
 
 using hyselam::InputError;
 
-namespace {
-
-geometry_msgs::Pose2D poseMsg(const hyselam::Pose2& pose) {
-  geometry_msgs::Pose2D msg;
-  msg.x = pose.x;
-  msg.y = pose.y;
-  msg.theta = pose.theta;
-  return msg;
-}
-
-}  // namespace
-
 DensityObservation fromMsg(const hyselam_msgs::FsdObservation& msg, double bandwidth,
                            const std::string& source) {
   const std::size_t kernels = msg.kernel_names.size();
@@ -71,8 +59,8 @@ hyselam_msgs::Word wordMsg(const NgramRecognizer& recognizer, WordIndex index) {
   msg.run = observations.runOf(begin);
   msg.stamp_begin = hyselam::toRosTime(observations.stamp(begin));
   msg.stamp_end = hyselam::toRosTime(observations.stamp(last));
-  msg.begin_in_odom = poseMsg(observations.pose(begin));
-  msg.end_in_odom = poseMsg(observations.pose(last));
+  msg.begin_in_odom = hyselam::toPose2dMsg(observations.pose(begin));
+  msg.end_in_odom = hyselam::toPose2dMsg(observations.pose(last));
   return msg;
 }
 
@@ -92,8 +80,8 @@ hyselam_msgs::WordMatch matchMsg(const NgramRecognizer& recognizer, const NgramM
   msg.stamp_older = hyselam::toRosTime(observations.stamp(place.older));
   msg.run_newer = observations.runOf(place.newer);
   msg.run_older = observations.runOf(place.older);
-  msg.newer_in_odom = poseMsg(observations.pose(place.newer));
-  msg.older_in_odom = poseMsg(observations.pose(place.older));
+  msg.newer_in_odom = hyselam::toPose2dMsg(observations.pose(place.newer));
+  msg.older_in_odom = hyselam::toPose2dMsg(observations.pose(place.older));
   msg.alignment_rms = static_cast<float>(place.rms);
   return msg;
 }
@@ -109,8 +97,8 @@ hyselam_msgs::SemanticRegion regionMsg(const ObservationStore& observations,
   msg.last = region.last;
   msg.stamp_begin = hyselam::toRosTime(observations.stamp(region.first));
   msg.stamp_end = hyselam::toRosTime(observations.stamp(region.last));
-  msg.begin_in_odom = poseMsg(observations.pose(region.first));
-  msg.end_in_odom = poseMsg(observations.pose(region.last));
+  msg.begin_in_odom = hyselam::toPose2dMsg(observations.pose(region.first));
+  msg.end_in_odom = hyselam::toPose2dMsg(observations.pose(region.last));
   msg.length = static_cast<float>(step * (region.last - region.first + 1));
   return msg;
 }

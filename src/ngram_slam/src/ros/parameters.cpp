@@ -69,10 +69,7 @@ void WordsServerParams::validate() const {
 }
 
 WordsServerParams loadWordsParams(hyselam::ParamLoader& loader) {
-  WordsServerParams params;
-  params.describe(loader);
-  params.validate();
-  return params;
+  return hyselam::loadDescribed<WordsServerParams>(loader);
 }
 
 }  // namespace ngram_slam

@@ -46,11 +46,7 @@ hyselam_msgs::SharedMapStatus sharedMapStatusMsg(const std::vector<RobotAnswers>
     robot.reason = answers[i].reason;
     robot.keyframes = static_cast<std::uint32_t>(robots[i].keyframes);
     robot.in_map = robots[i].map_in_shared.has_value();
-    if (const auto& pose = robots[i].map_in_shared) {
-      robot.pose.x = pose->x;
-      robot.pose.y = pose->y;
-      robot.pose.theta = pose->theta;
-    }
+    if (const auto& pose = robots[i].map_in_shared) robot.pose = hyselam::toPose2dMsg(*pose);
     robot.ties = static_cast<std::uint32_t>(robots[i].ties);
     if (robot.in_map) in.push_back(robot.name);
     if (!robot.in_map && robot.keyframes > 0) out.push_back(robot.name);

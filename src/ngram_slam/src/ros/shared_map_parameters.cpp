@@ -5,6 +5,7 @@
 #include <set>
 #include <sstream>
 
+#include "drawn_map.hpp"
 #include "hyselam_common/errors.hpp"
 
 namespace ngram_slam {
@@ -13,7 +14,7 @@ using hyselam::ParameterError;
 using hyselam::Range;
 
 SharedMapServerParams::SharedMapServerParams() {
-  map.max_cells = 50000000;
+  map.max_cells = kMostMapCells;
 }
 
 std::vector<std::string> SharedMapServerParams::names() const {
@@ -40,12 +41,7 @@ void SharedMapServerParams::describe(hyselam::ParameterVisitor& visit) {
         "of wall time between transforms");
   visit("diagnostic_period", diagnostic_period, Range::between(0.05, 60.0), "s",
         "of wall time between diagnostics and statuses");
-  visit("resolution", map.resolution, Range::between(0.01, 1.0), "m/cell", "of the map");
-  visit("usable_range", map.usable_range, Range::above(0.0), "m",
-        "farther returns clear the beam up to here only");
-  visit("occupied_ratio", map.occupied_ratio, Range::inside(0.0, 1.0), "",
-        "hits / (hits + misses) of an occupied cell");
-  visit("max_map_cells", map.max_cells, Range::between(1, 1e9), "", "growth beyond is refused");
+  describeDrawnMap(map, visit);
   visit.group("", shared);
 }
 
@@ -69,10 +65,7 @@ void SharedMapServerParams::validate() const {
 }
 
 SharedMapServerParams loadSharedMapParams(hyselam::ParamLoader& loader) {
-  SharedMapServerParams p;
-  p.describe(loader);
-  p.validate();
-  return p;
+  return hyselam::loadDescribed<SharedMapServerParams>(loader);
 }
 
 }  // namespace ngram_slam

@@ -17,14 +17,6 @@ using hyselam_pose_graph::PoseEdge;
 
 namespace {
 
-geometry_msgs::Pose2D toMsg(const Pose2& p) {
-  geometry_msgs::Pose2D msg;
-  msg.x = p.x;
-  msg.y = p.y;
-  msg.theta = p.theta;
-  return msg;
-}
-
 /// Where in an answer something is wrong.
 struct Place {
   const std::string& source;
@@ -56,7 +48,7 @@ hyselam_msgs::SlamEdge toMsg(const PoseEdge& e) {
   hyselam_msgs::SlamEdge msg;
   msg.from = static_cast<std::uint32_t>(e.from);
   msg.to = static_cast<std::uint32_t>(e.to);
-  msg.measured = toMsg(e.measured);
+  msg.measured = hyselam::toPose2dMsg(e.measured);
   for (int i = 0; i < 9; ++i) {
     msg.information[static_cast<std::size_t>(i)] = e.information(i / 3, i % 3);
   }
@@ -84,10 +76,10 @@ hyselam_msgs::SlamKeyframe toMsg(const SlamKeyframe& k) {
   msg.stamp = hyselam::toRosTime(k.stamp);
   msg.run = k.run;
   msg.path_length = k.path_length;
-  msg.odometry = toMsg(k.odometry);
-  msg.pose = toMsg(k.pose);
+  msg.odometry = hyselam::toPose2dMsg(k.odometry);
+  msg.pose = hyselam::toPose2dMsg(k.pose);
   const hyselam::LaserScan& scan = *k.scan;
-  msg.laser = toMsg(scan.laser_in_base);
+  msg.laser = hyselam::toPose2dMsg(scan.laser_in_base);
   msg.angle_min = scan.angle_min;
   msg.angle_increment = scan.angle_increment;
   msg.range_min = scan.range_min;
@@ -213,7 +205,7 @@ void toMsg(const GraphPart& part, hyselam_msgs::SlamGraph::Response* msg) {
   msg->version = part.version;
   for (const SlamKeyframe& k : part.keyframes) msg->new_keyframes.push_back(toMsg(k));
   for (const PoseEdge& e : part.odometry) msg->odometry.push_back(toMsg(e));
-  for (const Pose2& p : part.poses) msg->poses.push_back(toMsg(p));
+  for (const Pose2& p : part.poses) msg->poses.push_back(hyselam::toPose2dMsg(p));
   for (const SlamLoop& l : part.loops) msg->loops.push_back(toMsg(l));
   msg->settled = toMsg(part.settled);
 }

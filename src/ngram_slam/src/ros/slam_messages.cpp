@@ -17,14 +17,6 @@ namespace {
 /// Loops of less weight are drawn as contradicting, a while before they are not used (isUsed()).
 constexpr double kDoubtfulWeight = 0.5;
 
-geometry_msgs::Pose2D pose2d(const hyselam::Pose2& p) {
-  geometry_msgs::Pose2D out;
-  out.x = p.x;
-  out.y = p.y;
-  out.theta = p.theta;
-  return out;
-}
-
 /// The real word that an observation belongs to; the last one for observations without word yet.
 std::uint32_t wordAt(const WordLattice& text, std::uint32_t observation) {
   Position low = 0, high = text.positions();
@@ -58,7 +50,7 @@ hyselam_msgs::RegionGraph toMsg(const RegionGraph& graph, const std_msgs::Header
     n.class_name = toString(node.semantic_class);
     n.confidence = static_cast<float>(node.confidence);
     n.run = node.run;
-    n.pose = pose2d(node.pose);
+    n.pose = hyselam::toPose2dMsg(node.pose);
     n.length = static_cast<float>(node.length);
     n.stamp_begin = hyselam::toRosTime(node.stamp_begin);
     n.stamp_end = hyselam::toRosTime(node.stamp_end);
@@ -104,8 +96,8 @@ hyselam_msgs::WordMatch matchMsg(const NgramRecognizer& recognizer, const SlamMa
   msg.stamp_older = hyselam::toRosTime(match.stamp_older);
   msg.run_newer = observations.runOf(match.newer);
   msg.run_older = observations.runOf(match.older);
-  msg.newer_in_odom = pose2d(observations.pose(match.newer));
-  msg.older_in_odom = pose2d(observations.pose(match.older));
+  msg.newer_in_odom = hyselam::toPose2dMsg(observations.pose(match.newer));
+  msg.older_in_odom = hyselam::toPose2dMsg(observations.pose(match.older));
   msg.alignment_rms = -1.0f;
   return msg;
 }

@@ -2,6 +2,7 @@
 
 #include <sys/stat.h>
 
+#include "drawn_map.hpp"
 #include "hyselam_common/errors.hpp"
 #include "ngram_slam/slam/slam_engine.hpp"
 
@@ -11,7 +12,7 @@ using hyselam::ParameterError;
 using hyselam::Range;
 
 SlamServerParams::SlamServerParams() {
-  map.max_cells = 50000000;
+  map.max_cells = kMostMapCells;
 }
 
 void SlamServerParams::describe(hyselam::ParameterVisitor& visit) {
@@ -20,12 +21,7 @@ void SlamServerParams::describe(hyselam::ParameterVisitor& visit) {
   visit("loop_wait", loop_wait, Range::between(0.0, 3600.0), "s",
         "wall time that scans wait for loops and optimizations that count (loop_latency); what "
         "takes longer counts when it is done");
-  visit("resolution", map.resolution, Range::between(0.01, 1.0), "m/cell", "of the map");
-  visit("usable_range", map.usable_range, Range::above(0.0), "m",
-        "farther returns clear the beam up to here only");
-  visit("occupied_ratio", map.occupied_ratio, Range::inside(0.0, 1.0), "",
-        "hits / (hits + misses) of an occupied cell");
-  visit("max_map_cells", map.max_cells, Range::between(1, 1e9), "", "growth beyond is refused");
+  describeDrawnMap(map, visit);
   visit("map_update_interval", map_update_interval, Range::atLeast(0.0), "s",
         "of the data between maps; 0: none is drawn");
   visit("tf_broadcast", tf_broadcast, "map -> odom to tf");

@@ -246,20 +246,9 @@ void SlamServer::onTimeJump() {
 }
 
 void SlamServer::onInitialPose(const geometry_msgs::PoseWithCovarianceStamped::ConstPtr& msg) {
-  hyselam::InitialPose pose;
-  try {
-    pose = hyselam::initialPoseFromMsg(*msg, params_.global_frame_id,
-                                       initial_pose_subscriber_.getTopic());
-  } catch (const hyselam::InputError& e) {
-    ROS_ERROR_STREAM(log_name_ << " initial pose ignored: " << e.what());
-    return;
-  }
-  // The robot may have moved on while a person pointed at the map.
-  if (!msg->header.stamp.isZero()) {
-    if (const auto motion = input_->motionSince(msg->header.stamp)) {
-      pose.base_in_map = pose.base_in_map * *motion;
-    }
-  }
+  const auto pose = hyselam::initialPoseNow(
+      *msg, params_.global_frame_id, initial_pose_subscriber_.getTopic(), *input_, log_name_);
+  if (!pose) return;
   const Lock lock(mutex_);
   initial_pose_ = pose;
 }

@@ -279,14 +279,18 @@ void WordsServer::saveIfChanged(const char* when) {
   }
 }
 
+std::string WordsServer::corpusPath(const hyselam_msgs::CorpusPath::Request& request,
+                                    hyselam_msgs::CorpusPath::Response* out) const {
+  std::string path = request.path.empty() ? params_.corpus : request.path;
+  out->success = false;
+  if (path.empty()) out->message = "no path given, and the parameter corpus is empty";
+  return path;
+}
+
 bool WordsServer::onSave(hyselam_msgs::CorpusPath::Request& request,
                          hyselam_msgs::CorpusPath::Response& out) {
-  const std::string path = request.path.empty() ? params_.corpus : request.path;
-  out.success = false;
-  if (path.empty()) {
-    out.message = "no path given, and the parameter corpus is empty";
-    return true;
-  }
+  const std::string path = corpusPath(request, &out);
+  if (path.empty()) return true;
   try {
     if (journal_ && path == journal_->path()) {
       journal_->save(recognizer_->observations(), recognizer_->classes(), recognizer_->histogram());
@@ -308,12 +312,8 @@ bool WordsServer::onSave(hyselam_msgs::CorpusPath::Request& request,
 
 bool WordsServer::onLoad(hyselam_msgs::CorpusPath::Request& request,
                          hyselam_msgs::CorpusPath::Response& out) {
-  const std::string path = request.path.empty() ? params_.corpus : request.path;
-  out.success = false;
-  if (path.empty()) {
-    out.message = "no path given, and the parameter corpus is empty";
-    return true;
-  }
+  const std::string path = corpusPath(request, &out);
+  if (path.empty()) return true;
   try {
     // An empty corpus is where nothing was saved; asked for by name, the file must be there.
     CorpusJournal from(path);

@@ -87,13 +87,7 @@ void SemanticLocalizationParams::describe(hyselam::ParameterVisitor& visit) {
   visit("model", model,
         "directory that `train` or ~save has written, to begin with; empty: nothing learned");
   visit("descriptor", descriptor, "without a model");
-  visit("kernel", kernel,
-        {{"linear", SvmKernel::kLinear},
-         {"poly", SvmKernel::kPoly},
-         {"rbf", SvmKernel::kRbf},
-         {"exemplar", SvmKernel::kExemplar},
-         {"fusion", SvmKernel::kFusion}},
-        "without a model");
+  visit("kernel", kernel, svmKernelWords(), "without a model");
   visit.group("", recognizer);
   visit.group("", input);
   visit.group("", frame_ids);
@@ -110,10 +104,7 @@ void SemanticLocalizationParams::validate() const {
 }
 
 SemanticLocalizationParams loadParams(hyselam::ParamLoader& loader) {
-  SemanticLocalizationParams params;
-  params.describe(loader);
-  params.validate();
-  return params;
+  return hyselam::loadDescribed<SemanticLocalizationParams>(loader);
 }
 
 }  // namespace selovis

@@ -4,11 +4,13 @@
 #pragma once
 
 #include <geometry_msgs/Pose.h>
+#include <geometry_msgs/Pose2D.h>
 #include <geometry_msgs/Quaternion.h>
 #include <geometry_msgs/Transform.h>
 #include <nav_msgs/OccupancyGrid.h>
 #include <ros/time.h>
 #include <sensor_msgs/LaserScan.h>
+#include <std_msgs/String.h>
 #include <tf2/LinearMath/Transform.h>
 
 #include <string>
@@ -25,6 +27,8 @@ double toSeconds(const ros::Time& time);
 /// negative, not finite or too large (>= 2^32 s) values.
 ros::Time toRosTime(double seconds, const std::string& source = "time");
 
+std_msgs::String toStringMsg(const std::string& text);
+
 /// The heading of a quaternion, which is normalised. @throws InputError if it is not finite or so
 /// short
 /// (|q| < 0.1) that it says nothing; an all-zero quaternion is such a case.
@@ -37,6 +41,7 @@ Pose2 fromMsg(const geometry_msgs::Transform& transform, const std::string& sour
 /// All of it, the rotation normalised. @throws InputError as above, and for a height that is not
 /// finite.
 tf2::Transform spatialFromMsg(const geometry_msgs::Transform& transform, const std::string& source);
+geometry_msgs::Pose2D toPose2dMsg(const Pose2& pose);
 geometry_msgs::Pose toPoseMsg(const Pose2& pose);
 geometry_msgs::Transform toTransformMsg(const Pose2& pose);
 

@@ -8,6 +8,7 @@
 
 #include "hyselam_common/parameters.hpp"
 #include "hyselam_common/pose2.hpp"
+#include "hyselam_common/ros/scan_input.hpp"
 
 namespace hyselam {
 
@@ -36,5 +37,12 @@ struct InitialPoseParams {
 ///   or yaw that are not finite and > 0.
 InitialPose initialPoseFromMsg(const geometry_msgs::PoseWithCovarianceStamped& msg,
                                const std::string& global_frame, const std::string& source);
+
+/// The same at this moment: the robot may have moved on while a person pointed at the map. Nothing
+/// where it is refused, which is logged.
+std::optional<InitialPose> initialPoseNow(const geometry_msgs::PoseWithCovarianceStamped& msg,
+                                          const std::string& global_frame,
+                                          const std::string& source, const ScanInput& input,
+                                          const std::string& log_name);
 
 }  // namespace hyselam

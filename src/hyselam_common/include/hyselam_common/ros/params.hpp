@@ -119,6 +119,10 @@ class ParamLoader : public ParameterVisitor {
   /// Stores the value read and its row, unless it lies outside of what is allowed.
   template <typename T>
   void accept(const ParameterInfo& info, T& member, const T& value);
+  /// `element`: one of the array; none if it is not of its type.
+  template <typename T>
+  void visitArray(const ParameterInfo& info, std::vector<T>& member,
+                  std::optional<T> (*element)(XmlRpc::XmlRpcValue));
   [[noreturn]] void refuse(const ParameterInfo& info, const ParameterRow& row,
                            const XmlRpc::XmlRpcValue& value) const;
 
@@ -127,5 +131,15 @@ class ParamLoader : public ParameterVisitor {
   std::map<std::string, std::string> former_;  ///< name -> former name, where that one is set
   std::vector<ParameterRow> rows_;
 };
+
+/// Parameters of a struct that describes and validates itself; what is not set has its default.
+/// @throws ParameterError
+template <typename Params>
+Params loadDescribed(ParamLoader& loader) {
+  Params params;
+  params.describe(loader);
+  params.validate();
+  return params;
+}
 
 }  // namespace hyselam

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "hyselam_common/checksum.hpp"
 #include "hyselam_common/testing/temporary_directory.hpp"
 
 namespace hyselam {
@@ -41,6 +42,23 @@ inline void require(bool holds) {
 
 inline std::string textOf(const std::uint8_t* data, std::size_t size) {
   return std::string(reinterpret_cast<const char*>(data), size);
+}
+
+/// The text of a model, whose checksum at the end is made right: else nearly all would end there.
+inline std::string withRightChecksum(std::string text) {
+  const std::size_t last = text.rfind("checksum ");
+  if (last == std::string::npos) return text;
+  text.resize(last);
+  return text + "checksum " + crc32Text(text) + "\n";
+}
+
+/// A model out of its text, whose text is the same again. @throws InputError if it is refused.
+template <typename Model>
+Model modelWrittenBack(const std::string& text) {
+  Model model = Model::fromText(text, "fuzz");
+  const std::string written = model.toText();
+  require(Model::fromText(written, "written").toText() == written);
+  return model;
 }
 
 /// A folder of this process, in memory where the system has such a place.

@@ -47,6 +47,17 @@ inline std::string damaged(std::string text, unsigned seed) {
   return text;
 }
 
+/// That `random(seed)` of each seed is the same, and has the same text, once it is read back.
+template <typename Random, typename Read>
+void expectReadBack(unsigned seeds, const Random& random, const Read& read) {
+  for (unsigned seed = 0; seed < seeds; ++seed) {
+    const auto value = random(seed);
+    const std::string text = toXml(value);
+    ASSERT_EQ(read(text), value) << "seed " << seed << "\n" << text;
+    ASSERT_EQ(toXml(read(text)), text) << "seed " << seed;
+  }
+}
+
 inline std::string nested(int levels) {
   std::string text;
   for (int i = 0; i < levels; ++i) text += "<a>";

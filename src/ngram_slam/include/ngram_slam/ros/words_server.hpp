@@ -61,6 +61,9 @@ class WordsServer {
   std_msgs::Header header() const;
   void goOnFrom(Corpus corpus);
   void saveIfChanged(const char* when);
+  /// Of the request, else the parameter's; empty, and the answer says why, if there is none.
+  std::string corpusPath(const hyselam_msgs::CorpusPath::Request& request,
+                         hyselam_msgs::CorpusPath::Response* out) const;
   bool onSave(hyselam_msgs::CorpusPath::Request& request, hyselam_msgs::CorpusPath::Response& out);
   bool onLoad(hyselam_msgs::CorpusPath::Request& request, hyselam_msgs::CorpusPath::Response& out);
   bool onStartRun(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& out);

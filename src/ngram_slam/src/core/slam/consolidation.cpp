@@ -143,13 +143,18 @@ struct Edges {
   std::vector<SlamLoop> new_loops;  // composed of edges of dropped keyframes
 };
 
+/// The loop ties what the edge does.
+void tieAs(const PoseEdge& e, SlamLoop* loop) {
+  loop->older = e.from;
+  loop->newer = e.to;
+  loop->measured = e.measured;
+  loop->information = e.information;
+}
+
 /// A loop from edges of which some were loops.
 SlamLoop loopFrom(const PoseEdge& e) {
   SlamLoop loop;
-  loop.older = e.from;
-  loop.newer = e.to;
-  loop.measured = e.measured;
-  loop.information = e.information;
+  tieAs(e, &loop);
   loop.inlier_ratio = 1.0;
   return loop;
 }
@@ -246,11 +251,7 @@ SlamLoop movedOnto(const SlamLoop& loop, const SlamLoop& other, const PathPieces
   path.push_back({edgeOf(loop), turned});
   pieces.appendPath(turned ? loop.older : loop.newer, other.newer, &path);
   SlamLoop moved = loop;
-  const PoseEdge e = composedEdge(poses, path);
-  moved.older = e.from;
-  moved.newer = e.to;
-  moved.measured = e.measured;
-  moved.information = e.information;
+  tieAs(composedEdge(poses, path), &moved);
   moved.weight = 1.0;
   return moved;
 }

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hyselam_common/parameters.hpp"
@@ -25,6 +26,8 @@ inline bool comparesExemplars(SvmKernel kernel) {
 const char* toString(SvmKernel kernel);
 /// @throws hyselam::InputError for any other text.
 SvmKernel svmKernelFromString(const std::string& name);
+/// Each with its word, as parameters take them.
+const std::vector<std::pair<std::string, SvmKernel>>& svmKernelWords();
 
 struct ClassifierParams {
   SvmKernel kernel = SvmKernel::kFusion;

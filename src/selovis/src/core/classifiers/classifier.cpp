@@ -25,22 +25,26 @@ const char* toString(SvmKernel kernel) {
 }
 
 SvmKernel svmKernelFromString(const std::string& name) {
-  for (const SvmKernel k : {SvmKernel::kLinear, SvmKernel::kPoly, SvmKernel::kRbf,
-                            SvmKernel::kExemplar, SvmKernel::kFusion}) {
-    if (name == toString(k)) return k;
+  for (const auto& [word, kernel] : svmKernelWords()) {
+    if (name == word) return kernel;
   }
   throw hyselam::InputError("kernel '" + name + "'", "",
                             "is not known: there are linear, poly, rbf, exemplar, fusion");
 }
 
+const std::vector<std::pair<std::string, SvmKernel>>& svmKernelWords() {
+  static const std::vector<std::pair<std::string, SvmKernel>> words{
+      {"linear", SvmKernel::kLinear},
+      {"poly", SvmKernel::kPoly},
+      {"rbf", SvmKernel::kRbf},
+      {"exemplar", SvmKernel::kExemplar},
+      {"fusion", SvmKernel::kFusion}};
+  return words;
+}
+
 void ClassifierParams::describe(hyselam::ParameterVisitor& visit) {
   using hyselam::Range;
-  visit("kernel", kernel,
-        {{"linear", SvmKernel::kLinear},
-         {"poly", SvmKernel::kPoly},
-         {"rbf", SvmKernel::kRbf},
-         {"exemplar", SvmKernel::kExemplar},
-         {"fusion", SvmKernel::kFusion}},
+  visit("kernel", kernel, svmKernelWords(),
         "of the SVM; exemplar: nearest neighbors; fusion: those of each part of the descriptor");
   visit("power", power, Range::between(0.05, 4.0), "",
         "that each value of a signature is raised to");

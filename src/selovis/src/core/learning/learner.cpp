@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "empty_model.hpp"
 #include "hyselam_common/errors.hpp"
 
 namespace selovis {
@@ -56,13 +57,7 @@ void LearnerParams::validate() const {
 }
 
 PlaceModel untrainedPlaceModel(const TrainingOptions& options) {
-  options.classifier.validate();
-  PlaceModel model;
-  model.descriptor = options.descriptor;
-  model.descriptor_params = options.descriptor_params;
-  model.classifier = options.classifier;
-  model.views = options.views.empty() ? viewsFor(options.classifier.kernel) : options.views;
-  model.horizontal_fov = options.horizontal_fov;
+  PlaceModel model = emptyModel(options);
   const auto descriptor = makeDescriptor(options.descriptor, options.descriptor_params);
   if (descriptor->needsDictionary()) {
     throw InputError("descriptor '" + options.descriptor + "'", "",

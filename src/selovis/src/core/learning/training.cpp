@@ -2,6 +2,7 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 
+#include "empty_model.hpp"
 #include "hyselam_common/errors.hpp"
 #include "selovis/learning/error_source.hpp"
 #include "selovis/learning/place_model.hpp"
@@ -131,13 +132,7 @@ std::unique_ptr<Classifier> PlaceModel::makeClassifier() const {
 PlaceModel trainPlaceModel(const std::vector<std::size_t>& frames_of_tours, const LoadFrame& load,
                            const TrainingOptions& options) {
   checkViews(options.views);
-  options.classifier.validate();
-  PlaceModel model;
-  model.descriptor = options.descriptor;
-  model.descriptor_params = options.descriptor_params;
-  model.classifier = options.classifier;
-  model.views = options.views.empty() ? viewsFor(options.classifier.kernel) : options.views;
-  model.horizontal_fov = options.horizontal_fov;
+  PlaceModel model = emptyModel(options);
   auto descriptor = makeDescriptor(options.descriptor, options.descriptor_params);
   if (descriptor->needsDictionary()) {
     learnDictionary(*descriptor, frames_of_tours, load, options);
