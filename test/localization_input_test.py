@@ -225,6 +225,7 @@ class LocalizationInputTest(unittest.TestCase):
             rig.fresh_diagnosis()
             rig.set_clock(now)
             rig.wait_value("time went back", jump)
+        rig.wait_said("time went back", level=Log.WARN)
         told = [m.msg for m in rig.log.messages[rig.logged_before:] if "time went back" in m.msg]
         self.assertEqual(len(told), 1, told)
 
