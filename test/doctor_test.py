@@ -17,6 +17,7 @@ import rostest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from nav_msgs.msg import OccupancyGrid, Odometry
 from roslib.packages import find_node
+from hyselam_msgs.msg import LocalizationStatus
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Image, LaserScan
 from std_msgs.msg import String
@@ -320,6 +321,28 @@ class DoctorTest(unittest.TestCase):
         finally:
             own.unregister()
 
+    def test_a_layer_is_known_under_any_name_of_its_node(self):
+        """As where it takes amcl's place; amcl itself is none."""
+        told = {"amcl: localisation": "global, not converged"}
+        _, findings = self.call(self.robot(pose=False, says=told, runs="HySeLAM 1.0.0"))
+        self.assertIn("localization runs, but has not converged yet", self.wrong(findings, "tf"), self.said)
+        self.assertNotIn("no layer", self.said)
+        _, findings = self.call(self.robot(pose=False, says={"amcl: Standard deviation": "too large"}, runs="HySeLAM 1.0.0"))
+        self.assertIn("no layer publishes /diagnostics", self.said)
+
+    def test_the_scans_that_the_layers_read_are_meant(self):
+        status = rospy.Publisher("localization_status", LocalizationStatus, queue_size=1)
+        reader = rospy.Subscriber("base_scan", LaserScan, lambda _: None)
+        try:
+            code, findings = self.call(self.robot(topic="base_scan"))
+            self.assertEqual(code, 0, self.said)
+            self.assertTrue([f for f in findings if f["name"] == "scan" and f["level"] == "ok"], self.said)
+            _, findings = self.call(self.robot(topic="base_scan"), "--scan", "scan")
+            self.assertIn("nobody publishes /scan", self.wrong(findings, "scan"), "another one was asked for")
+        finally:
+            reader.unregister()
+            status.unregister()
+
     def test_the_version_that_runs_is_told_beside_the_installed_one(self):
         installed = subprocess.run(["rosrun", "hyselam_bringup", "doctor", "--version"], stdout=subprocess.PIPE, text=True, check=True).stdout.strip()
         says = {"slam: SLAM": "38 keyframes"}
@@ -374,6 +397,7 @@ class DoctorTest(unittest.TestCase):
             other.terminate()
             other.wait()
         self.assertIn("map -> odom is published by", self.wrong(findings, "tf"), self.said)
+        self.assertFalse([f for f in findings if f["name"] == "tf" and f["level"] == "ok"], self.said)
 
     def test_ctrl_c_ends_the_watching_only(self):
         def interrupt(doctor):

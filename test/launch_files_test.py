@@ -119,6 +119,15 @@ class LaunchFilesTest(unittest.TestCase):
         self.assertIn("pose (default", told)
         self.assertNotIn("pose_number", told)
 
+    def test_a_relative_path_is_refused_in_words(self):
+        for name, arguments, text in (("hyselam.launch", ["map:=x.yaml"], "map is an absolute path, not x.yaml"),
+                                      ("demo.launch", ["bag:=x.bag"], "bag is an absolute path, not x.bag")):
+            done = subprocess.run(["roslaunch", os.path.join(self.folder, name), *arguments], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                                  text=True, timeout=180)
+            self.assertNotEqual(done.returncode, 0, name)
+            self.assertIn(text, done.stdout, name)
+            self.assertNotIn("started", done.stdout, name)
+
     def test_the_page_is_started_on_request_with_what_the_layers_read(self):
         self.assertNotIn("/web", self.whole()[0])
         nodes, config = self.whole("web:=true", "scan:=base_scan", "base_frame:=base", "web_port:=9000", "web_host:=0.0.0.0", "web_token_file:=/nowhere/tokens")

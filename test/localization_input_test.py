@@ -210,6 +210,19 @@ class LocalizationInputTest(RigCase):
         rig.wait_said("time went back", "stamps of the scans", level=Log.WARN)
         rig.wait_value("time went back", 1)
 
+    def test_two_clocks_that_fight(self):
+        """Each jump counts, and one line tells of the first."""
+        rig = self.guided()
+        now = rig.now
+        for jump in range(1, 6):
+            rig.set_clock(now + 5.0)
+            rig.fresh_diagnosis()
+            rig.set_clock(now)
+            rig.wait_value("time went back", jump)
+        rig.wait_said("time went back", level=Log.WARN)
+        told = [m.msg for m in rig.log.messages[rig.logged_before:] if "time went back" in m.msg]
+        self.assertEqual(len(told), 1, told)
+
     # The density nodelet takes its scans the same way.
 
     def test_fsd_observes_by_distance(self):

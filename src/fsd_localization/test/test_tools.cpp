@@ -82,6 +82,15 @@ TEST_F(Tools, LocalizeOfflineWritesTrajectoryAndJson) {
   EXPECT_EQ(json, nlohmann::json::parse(fileBytes(d / "stdout")));
 }
 
+TEST_F(Tools, LocalizeOfflineSaysThatItWasNeverSure) {
+  ASSERT_EQ(localize("--json " + d / "j.json"), 0);
+  const auto json = nlohmann::json::parse(fileBytes(d / "j.json"));
+  EXPECT_EQ(json["converged_at_m"].is_null(), errors.find("never sure in") != std::string::npos);
+  ASSERT_EQ(localize("--distance 0.05 --model fsd --json " + d / "j.json"), 0);
+  ASSERT_TRUE(nlohmann::json::parse(fileBytes(d / "j.json"))["converged_at_m"].is_null());
+  EXPECT_NE(errors.find("never sure in 0 m: is this the right map?"), std::string::npos) << errors;
+}
+
 TEST_F(Tools, EqualSeedsGiveEqualBytes) {
   ASSERT_EQ(localize("--seed 3 --trajectory " + d / "a.tum"), 0) << errors;
   ASSERT_EQ(localize("--seed 3 --trajectory " + d / "b.tum"), 0) << errors;

@@ -131,7 +131,8 @@ class DynamicParameters {
     for (const auto& change : changes) {
       if (loader.known().count(change.first) > 0) continue;
       ROS_WARN_STREAM(log_name_ << " parameter '" << change.first
-                                << "' of amcl has no effect here (see README): it stays");
+                                << "' of amcl has no effect here (see \"Replacing amcl\" in "
+                                   "fsd_localization/README.md): it stays");
     }
     server_->setParams(params);
     config = configOf(server_->params());

@@ -197,8 +197,9 @@ std::vector<std::string> ignoredAmclParams(const ParamLoader& loader) {
   std::vector<std::string> sentences;
   for (const char* name : kIgnoredOfAmcl) {
     if (loader.isSet(name)) {
-      sentences.push_back(std::string("parameter '") + name +
-                          "' of amcl has no effect here (see README)");
+      sentences.push_back(
+          std::string("parameter '") + name +
+          "' of amcl has no effect here (see \"Replacing amcl\" in fsd_localization/README.md)");
     }
   }
   return sentences;

@@ -2,6 +2,7 @@
 // master.
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <ctime>
 #include <functional>
 #include <iostream>
@@ -235,6 +236,10 @@ nlohmann::json run(const Options& o) {
                       {"scans_without_odometry", result.without_odometry},
                       {"scans_refused", result.refused}};
   if (!score.empty()) j["against_reference"] = score.report();
+  if (result.converged_at.is_null()) {
+    std::cerr << "warning: never sure in " << std::lround(result.travelled)
+              << " m: is this the right map?\n";
+  }
   std::cout << j.dump(2) << "\n";
   return j;
 }
@@ -279,7 +284,8 @@ int main(int argc, char** argv) {
   }
   app.add_option("--reference", o.reference,
                  "true poses (TUM, or a reference table); default: the bag's ground truth, if any");
-  app.add_option("--trajectory", o.trajectory, "estimated poses to write (TUM), one per update");
+  app.add_option("--trajectory", o.trajectory,
+                 "estimated poses to write (TUM), one per update; guesses before converged_at_m");
   app.add_option("--updates", o.updates,
                  "table to write (CSV), one line per update with a true pose");
   app.add_option("--place-odds", o.place_odds,

@@ -12,9 +12,10 @@ namespace hyselam {
 
 namespace {
 
-constexpr double kClockSlack = 0.5;    // [s] a smaller step back is a clock being adjusted
-constexpr double kStampSlack = 2.0;    // [s] an older scan is not late: the bag began again
-constexpr double kRemindEvery = 10.0;  // [s] of wall time without scans
+constexpr double kClockSlack = 0.5;           // [s] a smaller step back is a clock being adjusted
+constexpr double kStampSlack = 2.0;           // [s] an older scan is not late: the bag began again
+constexpr double kRemindEvery = 10.0;         // [s] of wall time without scans
+constexpr double kJumpReminderPeriod = 10.0;  // [s] of wall time between warnings of jumps
 
 std::string seconds(double s) {
   std::ostringstream out;
@@ -67,7 +68,17 @@ void ScanInput::checkClock() {
 
 void ScanInput::restartClock(const std::string& jump) {
   ++time_jumps_;
-  ROS_WARN_STREAM(log_name_ << " time went back: " << jump << "; starting again");
+  // Two clocks that fight give twenty a second: the first is told at once, the others counted.
+  const ros::WallTime now = ros::WallTime::now();
+  if (jumps_told_.isZero() || (now - jumps_told_).toSec() > kJumpReminderPeriod) {
+    const std::size_t untold = time_jumps_ - jumps_counted_ - 1;
+    ROS_WARN_STREAM(log_name_ << " time went back: " << jump << "; starting again"
+                              << (untold > 0 ? ", and " + std::to_string(untold) +
+                                                   " times since the last warning: two clocks?"
+                                             : ""));
+    jumps_told_ = now;
+    jumps_counted_ = time_jumps_;
+  }
   waiting_.clear();
   tf_.clear();
   last_stamp_ = ros::Time();

@@ -79,7 +79,9 @@ class ScanInput {
   std::size_t received_ = 0, used_ = 0, time_jumps_ = 0, geometry_changes_ = 0;
   std::size_t reported_received_ = 0, reported_drops_ = 0;
   ros::WallTime reported_;
-  ros::WallTime quiet_since_;  // of the last scan, or of the last reminder that there is none
+  ros::WallTime jumps_told_;       // when time was last said to have gone back
+  std::size_t jumps_counted_ = 0;  // time_jumps_ then
+  ros::WallTime quiet_since_;      // of the last scan, or of the last reminder that there is none
   ros::Subscriber subscriber_;
 };
 
