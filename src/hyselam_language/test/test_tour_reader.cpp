@@ -1,5 +1,5 @@
-// Running talk about a floor becomes rows of rooms with certainties, and names of doors with odds; the
-// sampling is compared with all answers there are.
+// Running talk about a floor becomes rows of rooms with certainties, and names of doors with odds;
+// the sampling is compared with all answers there are.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -73,8 +73,9 @@ TEST(TourReader, TellsRowsOfTalkThatTheGrammarRefuses) {
 
 TEST(TourReader, LeftAndRightSaidForEachOtherGiveTheMirroredTour) {
   const auto read = [](const std::string& one, const std::string& other) {
-    return english().read("So on the " + one + " you've got the kitchen and then the archive. On the " + other +
-                          " it's the library, and opposite the archive, on the " + other + ", the workshop.");
+    return english().read(
+        "So on the " + one + " you've got the kitchen and then the archive. On the " + other +
+        " it's the library, and opposite the archive, on the " + other + ", the workshop.");
   };
   const ToldTour tour = read("left", "right"), mirrored = read("right", "left");
   EXPECT_EQ(namesOf(tour.left), namesOf(mirrored.right));
@@ -100,42 +101,49 @@ TEST(TourReader, OneRoomUnderSeveralNamesIsOneRoom) {
 }
 
 TEST(TourReader, ReadsPortuguese) {
-  const ToldTour tour = TourReader::shipped(Grammar::shipped("pt"))
-                            .read("Olha, à tua esquerda tens a cozinha, depois vem a biblioteca. Do lado "
-                                  "direito é a farmácia e a seguir a oficina.");
+  const ToldTour tour =
+      TourReader::shipped(Grammar::shipped("pt"))
+          .read(
+              "Olha, à tua esquerda tens a cozinha, depois vem a biblioteca. Do lado "
+              "direito é a farmácia e a seguir a oficina.");
   EXPECT_EQ(namesOf(tour.left), (Names{"cozinha", "biblioteca"}));
   EXPECT_EQ(namesOf(tour.right), (Names{"farmácia", "oficina"}));
 }
 
 TEST(TourReader, AnyTextIsReadAndTheSameTextGivesTheSame) {
   for (const std::string& text :
-       {std::string(), std::string(" .!?;\n"), std::string("\xff\xfe left \x80 right"), std::string(50000, 'a'),
-        std::string(30000, ' ') + "the lab"}) {
+       {std::string(), std::string(" .!?;\n"), std::string("\xff\xfe left \x80 right"),
+        std::string(50000, 'a'), std::string(30000, ' ') + "the lab"}) {
     EXPECT_NO_THROW(english().read(text));
   }
   std::string many;
-  for (int room = 0; room < 300; ++room) many += "On the left is room " + std::to_string(room) + ". ";
+  for (int room = 0; room < 300; ++room)
+    many += "On the left is room " + std::to_string(room) + ". ";
   EXPECT_LE(english().read(many).names.size(), 60u);
-  const std::string text = "On the left the kitchen, the lab and the archive, across from the lab is Anna.";
+  const std::string text =
+      "On the left the kitchen, the lab and the archive, across from the lab is Anna.";
   const ToldTour a = english().read(text), b = english().read(text);
   EXPECT_EQ(namesOf(a.left), namesOf(b.left));
   ASSERT_EQ(a.left.size(), b.left.size());
-  for (std::size_t k = 0; k < a.left.size(); ++k) EXPECT_EQ(a.left[k].side_certainty, b.left[k].side_certainty);
+  for (std::size_t k = 0; k < a.left.size(); ++k)
+    EXPECT_EQ(a.left[k].side_certainty, b.left[k].side_certainty);
 }
 
 TEST(TourReader, RefusesModelsThatAreNone) {
   const Grammar grammar = Grammar::shipped("en");
-  hyselam::testing::expectError(
-      hyselam::testing::messageOf<hyselam::InputError>([] { language::TourModel::fromText("m.txt", "hello"); }),
-      {"m.txt", "hyselam_tour_reader 1"});
   hyselam::testing::expectError(hyselam::testing::messageOf<hyselam::InputError>(
-                                    [] { language::TourModel::fromText("m.txt", "hyselam_tour_reader 9\n"); }),
+                                    [] { language::TourModel::fromText("m.txt", "hello"); }),
+                                {"m.txt", "hyselam_tour_reader 1"});
+  hyselam::testing::expectError(hyselam::testing::messageOf<hyselam::InputError>([] {
+                                  language::TourModel::fromText("m.txt", "hyselam_tour_reader 9\n");
+                                }),
                                 {"m.txt", "9"});
   EXPECT_FALSE(TourReader::isShipped("xx"));
 }
 
 TEST(TourDescription, SaysHowSureItIs) {
-  const ToldTour tour = english().read("On the left the kitchen, then the archive. On the right the library.");
+  const ToldTour tour =
+      english().read("On the left the kitchen, then the archive. On the right the library.");
   const DescribedBuilding building = describeTour(tour, "corridor");
   EXPECT_NO_THROW(checkDescription(building, "tour"));
   ASSERT_EQ(3u, building.connections.size());
@@ -164,23 +172,29 @@ TEST(TourLayout, SamplesWhatAllLayoutsTogetherSay) {
         for (const auto& [side, row] : rows) {
           for (std::size_t k = 0; k < row.size(); ++k) {
             sum += side ? e.left[row[k]] : e.right[row[k]];
-            sum += k == 0 ? e.first[row[k]] : k + 1 == row.size() ? e.last[row[k]] : e.inner[row[k]];
-            for (std::size_t j = k + 1; j < row.size(); ++j) sum += e.before[row[k] * kRooms + row[j]];
+            sum += k == 0                ? e.first[row[k]]
+                   : k + 1 == row.size() ? e.last[row[k]]
+                                         : e.inner[row[k]];
+            for (std::size_t j = k + 1; j < row.size(); ++j)
+              sum += e.before[row[k] * kRooms + row[j]];
           }
         }
         for (std::size_t a = 0; a < kRooms; ++a)
           for (std::size_t b = a + 1; b < kRooms; ++b)
             if (is_left(a) != is_left(b))
-              sum += std::log(std::exp(e.facing[a * kRooms + b]) + std::exp(e.apart[a * kRooms + b]));
+              sum +=
+                  std::log(std::exp(e.facing[a * kRooms + b]) + std::exp(e.apart[a * kRooms + b]));
         best = std::max(best, sum);
         all += std::exp(sum);
-        for (std::size_t room = 0; room < kRooms; ++room) left[room] += is_left(room) ? std::exp(sum) : 0.0;
+        for (std::size_t room = 0; room < kRooms; ++room)
+          left[room] += is_left(room) ? std::exp(sum) : 0.0;
       }
     } while (std::next_permutation(order.begin(), order.end()));
     language::TourLayoutParams params;
     params.sweeps = 6000;
     const language::TourLayout layout = language::layOut(e, params);
-    for (const auto& room : layout.left) EXPECT_NEAR(left[room.room] / all, room.side_certainty, 0.05) << seed;
+    for (const auto& room : layout.left)
+      EXPECT_NEAR(left[room.room] / all, room.side_certainty, 0.05) << seed;
     for (const auto& room : layout.right)
       EXPECT_NEAR(1.0 - left[room.room] / all, room.side_certainty, 0.05) << seed;
     EXPECT_EQ(kRooms, layout.left.size() + layout.right.size());
