@@ -323,11 +323,6 @@ void LocalizationServer::noteResult(const LocalizationResult& result, const Pose
                               << hyselam::degrees(result.base_in_map.theta) << " deg after "
                               << result.travelled << " m");
   }
-  if (result.misfits_standing && !(last_result_ && last_result_->misfits_standing)) {
-    ROS_WARN_STREAM(log_name_ << " " << std::lround(100.0 * result.inlier_ratio.value_or(0.0))
-                              << " % of the returns explained while the robot stands: was it "
-                                 "carried? drive a little, or set a pose");
-  }
   last_result_ = result;
   // An unconverged pose does not move the transform: dead reckoning from the last known pose is
   // better than jumping between hypotheses.
