@@ -1,6 +1,6 @@
-// Sessions of the SLAM server that end while the robot drives, so that its map stays as large as the
-// building. On the thread that draws maps: scans are added meanwhile, to the session that ends, and
-// once more to the next one.
+// Sessions of the SLAM server that end while the robot drives, so that its map stays as large as
+// the building. On the thread that draws maps: scans are added meanwhile, to the session that ends,
+// and once more to the next one.
 #include <chrono>
 #include <utility>
 
@@ -28,8 +28,8 @@ bool SlamServer::isSessionOver() const {
 
 /// Slow. Its pending work is done: the first scans do not wait for it.
 std::unique_ptr<SlamServer::Mapping> SlamServer::nextSession(SlamState state) const {
-  auto next = std::make_unique<Mapping>(
-      params_, consolidated(std::move(state), params_.slam.consolidation));
+  auto next = std::make_unique<Mapping>(params_,
+                                        consolidated(std::move(state), params_.slam.consolidation));
   next->jobs.runAll(&next->engine);
   next->requantizations = -1;  // who listens gets all words anew: others have gone
   return next;

@@ -37,9 +37,9 @@ namespace ngram_slam {
 /// `dynamic_map`, `slam_graph`, `~save`, `~load`, `~pause`, `~resume`.
 ///
 /// Scans come on the queue of `nh`, which must serve one callback at a time. Loops are verified and
-/// poses optimized on one thread, maps drawn, saved and consolidated on another, services answered on a third:
-/// none of them delays a scan by more than it takes to copy what it needs, but where a loop that
-/// counts is not there yet (SlamServerParams::loop_wait).
+/// poses optimized on one thread, maps drawn, saved and consolidated on another, services answered
+/// on a third: none of them delays a scan by more than it takes to copy what it needs, but where a
+/// loop that counts is not there yet (SlamServerParams::loop_wait).
 class SlamServer {
  public:
   /// Reads and checks the parameters of `private_nh` and the state, before anything is subscribed.
