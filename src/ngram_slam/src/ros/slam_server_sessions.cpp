@@ -1,6 +1,8 @@
 // Sessions of the SLAM server that end while the robot drives, so that its map stays as large as
 // the building. On the thread that draws maps: scans are added meanwhile, to the session that ends,
 // and once more to the next one.
+#include <malloc.h>
+
 #include <chrono>
 #include <utility>
 
@@ -40,13 +42,15 @@ std::unique_ptr<SlamServer::Mapping> SlamServer::nextSession(SlamState state) co
 bool SlamServer::goOnWith(std::unique_ptr<Mapping>* next) {
   Mapping& n = **next;
   std::vector<LaterScan> scans;
-  const auto addScans = [&] {
+  // With the loops that count before each, as offline: unless others wait, where they come later.
+  const auto addScans = [&](bool others_wait) {
     for (const LaterScan& s : scans) {
       if (!n.localized) n.engine.startRunByOdometry(s.odometry);
+      while (!n.jobs.takeIn(s.scan.stamp, &n.engine) && !others_wait) n.jobs.runHere();
       n.engine.add(s.scan, s.odometry);
+      n.jobs.noteScan(s.scan.stamp, &n.engine);
       n.localized = true;
     }
-    if (!scans.empty()) n.jobs.noteScan(scans.back().scan.stamp, &n.engine);
     scans.clear();
   };
   while (true) {
@@ -58,7 +62,7 @@ bool SlamServer::goOnWith(std::unique_ptr<Mapping>* next) {
       if (ending_ || !later_scans_) return false;
       std::swap(scans, *later_scans_);
       if (n.localized && scans.size() <= kFewScans) {
-        addScans();
+        addScans(true);
         n.saved_scans = mapping_->saved_scans;
         std::swap(mapping_, *next);
         later_scans_.reset();
@@ -68,7 +72,7 @@ bool SlamServer::goOnWith(std::unique_ptr<Mapping>* next) {
         return true;
       }
     }
-    addScans();
+    addScans(false);
   }
 }
 
@@ -91,6 +95,9 @@ void SlamServer::changeSession() {
     error = e.what();
     ROS_ERROR_STREAM(log_name_ << " the session goes on: " << error);
   }
+  next.reset();
+  // Thousands of keyframes went, out of many threads' arenas, which would keep their room.
+  malloc_trim(0);
   const Lock lock(mutex_);
   status_.session_error = error;
   status_.session_ms = millisecondsSince(begin);
