@@ -13,7 +13,7 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "scripts"))
 
-from planar import compose, inverse, planar  # noqa: E402
+from planar import compose, inverse, moved, planar  # noqa: E402, F401 (for the benches)
 
 PREFIX = pathlib.Path(os.environ.get("HYSELAM_PREFIX", ROOT / "devel"))
 PICTURES = ("/camera/color/image_raw", "/camera/depth/image_raw", "/camera/color/camera_info", "/camera/depth/camera_info")
@@ -42,7 +42,7 @@ def tool(package, name, *args):
         sys.exit(f"error: {name}: {(done.stderr.strip().splitlines() or [done.returncode])[-1]}")
 
 
-def prepare(folder, pictures_per_second, size, scan_rate=10, seed=1):
+def prepare(folder, pictures_per_second, size, scan_rate=10, seed=1, route="office", plan="office"):
     """Bag and map of a round through the office with pictures, and a model of what its places look like; kept in the
     folder for the next time."""
     folder = pathlib.Path(folder)
@@ -50,10 +50,10 @@ def prepare(folder, pictures_per_second, size, scan_rate=10, seed=1):
     if not (folder / "model" / "model.json").exists() or not (folder / "round.bag").exists():
         say("drives a round and films it")
         drive, width, height = folder / "drive.bag", *size
-        tool("hyselam_sim", "simulate", "--route", "office", "--seed", seed, "--scan-rate", scan_rate,
+        tool("hyselam_sim", "simulate", "--plan", plan, "--route", route, "--seed", seed, "--scan-rate", scan_rate,
              "--odometry-rate", max(20, scan_rate), "--out", drive, "--map", folder / "map.yaml", "--resolution", 0.05)
-        tool("hyselam_sim", "film", "--bag", drive, "--route", "office", "--rate", pictures_per_second, "--width", width,
-             "--height", height, "--images", folder / "pictures", "--out", folder / "round.bag")
+        tool("hyselam_sim", "film", "--bag", drive, "--plan", plan, "--route", route, "--rate", pictures_per_second, "--width",
+             width, "--height", height, "--images", folder / "pictures", "--out", folder / "round.bag")
         tool("selovis", "train", "--labels", folder / "pictures" / "labels.csv", "--descriptor", "GLANCE+scan", "--kernel",
              "exemplar", "--out", folder / "model")
     return folder
@@ -64,7 +64,7 @@ class Round:
 
     def __init__(self, bag_path):
         import rosbag
-        self.events = []  # (time since the start, topic, bytes or pose of the robot in odom)
+        self.events = []  # (time since the start, topic, bytes or pose of the robot: /tf in odom, /ground_truth in the plan)
         self.static, truth = [], []
         begin = None
         with rosbag.Bag(str(bag_path)) as bag:
@@ -79,32 +79,35 @@ class Round:
                     self.static += kind().deserialize(data).transforms
                 elif topic == "/ground_truth":
                     truth.append(planar(kind().deserialize(data).pose.pose))
+                    self.events.append((stamp.to_sec() - begin, topic, truth[-1]))
                 else:
                     self.events.append((stamp.to_sec() - begin, topic, bytearray(data)))
-        # Odometry before the scan of the same time, as on a robot.
-        self.events.sort(key=lambda e: (round(e[0], 6), e[1] != "/tf"))
+        # Odometry and truth before the scan of the same time, as on a robot.
+        self.events.sort(key=lambda e: (round(e[0], 6), e[1] not in ("/tf", "/ground_truth")))
         poses = [e[2] for e in self.events if e[1] == "/tf"]
         self.duration = self.events[-1][0] + 0.05
         self.start = truth[0]
-        # From the end of one round to the start of the next, the odometry tells what the robot does in truth.
-        self.lap = compose(poses[-1], compose(compose(inverse(truth[-1]), truth[0]), inverse(poses[0])))
+        # The frame of the odometry in the plan, as it is at both ends.
+        self.odom_in_plan = [compose(t, inverse(p)) for t, p in ((truth[0], poses[0]), (truth[-1], poses[-1]))]
 
     @staticmethod
     def _odometry(msg):
         for t in msg.transforms:
             if t.child_frame_id.lstrip("/") == "base_link":
-                q, p = t.transform.rotation, t.transform.translation
-                return p.x, p.y, 2 * math.atan2(q.z, q.w)
+                return moved(t.transform.translation, t.transform.rotation)
         return None
 
-    def forever(self, begin=1.0):
-        """(stamp, topic, bytes or pose), round after round."""
-        offset = (0.0, 0.0, 0.0)
-        while True:
-            for after, topic, what in self.events:
-                yield begin + after, topic, compose(offset, what) if topic == "/tf" else what
-            begin += self.duration
-            offset = compose(offset, self.lap)
+
+def forever(rounds, begin=1.0):
+    """(stamp, topic, bytes or pose) of one round after the other, again and again. From the end of one to the start of the
+    next, the odometry tells what the robot does in truth."""
+    offset, number = (0.0, 0.0, 0.0), 0
+    while True:
+        this, number = rounds[number % len(rounds)], number + 1
+        for after, topic, what in this.events:
+            yield begin + after, topic, compose(offset, what) if topic == "/tf" else what
+        begin += this.duration
+        offset = compose(offset, compose(inverse(this.odom_in_plan[1]), rounds[number % len(rounds)].odom_in_plan[0]))
 
 
 def dated(data, stamp):

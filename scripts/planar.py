@@ -4,7 +4,12 @@ import math
 
 def planar(pose):
     """Of geometry_msgs/Pose."""
-    return pose.position.x, pose.position.y, 2 * math.atan2(pose.orientation.z, pose.orientation.w)
+    return moved(pose.position, pose.orientation)
+
+
+def moved(by, turned):
+    """Of a shift and a rotation, as geometry_msgs/Transform has them."""
+    return by.x, by.y, 2 * math.atan2(turned.z, turned.w)
 
 
 def compose(a, b):

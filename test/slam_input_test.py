@@ -196,6 +196,18 @@ class SlamInputTest(unittest.TestCase):
         self.assertIn("truncated", ended.stderr)
         self.assertIn(path, ended.stderr)
 
+    def test_sessions_end_while_it_drives(self):
+        rig = self.rig(session_path=3.0)
+        for _ in range(3):
+            rig.feed(60)
+            self.assert_right(rig)
+        wait_until(lambda: rig.feed(1) or int(rig.value("sessions ended")) >= 2, "no session ends")
+        rig.feed(20)
+        self.assert_right(rig)
+        self.assertEqual(int(rig.value("runs")), int(rig.value("sessions ended")) + 1)
+        self.assertEqual(rig.value("place of the run"), "tied")
+        self.assertEqual(rig.value("times lost"), "0")
+
     def test_pause_and_resume(self):
         rig = self.rig()
         rig.feed(80)

@@ -116,6 +116,23 @@ TEST_F(ObjectMapperInRoom, MovedObjectKeepsItsIdAndIsMoreMovable) {
   EXPECT_LT(movability(map_, map_.objects[0].id), movability(map_, book));
 }
 
+TEST_F(ObjectMapperInRoom, RemembersTheNewestStaysOnly) {
+  constexpr int kVisits = static_cast<int>(kMostStays) + 30;
+  for (int visit = 0; visit < kVisits; ++visit) {
+    look({table_, seen(1.9, 0.3, 0.75, kCup, kRed)}, 1000.0 * (visit + 1));
+  }
+  mapper_.consolidate();
+  const auto& history = find("red")->history;
+  ASSERT_EQ(history.size(), kMostStays);
+  EXPECT_EQ(history.back().from, 1000.0 * kVisits);
+  EXPECT_EQ(history.front().from, 1000.0 * 31);
+  // Found again elsewhere it is the same, with a history that is no longer.
+  look({table_, seen(2.3, -0.3, 0.75, kCup, kRed)}, 1000.0 * (kVisits + 1));
+  mapper_.consolidate();
+  EXPECT_EQ(find("red")->history.size(), kMostStays);
+  EXPECT_EQ(find("red")->history.front().from, 1000.0 * 32);
+}
+
 TEST_F(ObjectMapperInRoom, ReassociatesAllMovedObjectsOfEqualAppearance) {
   look({table_, seen(1.7, 0.3, 0.75, kCup, kRed), seen(1.9, -0.3, 0.75, kCup, kRed),
         seen(2.2, 0.0, 0.75, kCup, kRed)},

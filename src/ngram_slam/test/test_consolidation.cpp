@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/rng.hpp"
@@ -493,6 +494,55 @@ TEST(Consolidation, LetsSlamContinue) {
   EXPECT_NEAR(engine.pose().x, 10.1, 0.1);
   EXPECT_NEAR(engine.pose().y, 0.0, 0.1);
   EXPECT_EQ(engine.keyframes().back().run, 2u);
+}
+
+/// To and fro in the hall without a stop, odometry going on; after each time there and back the
+/// session ends, if they do. Keyframes after each.
+std::vector<std::size_t> keyframesToAndFro(int times, bool sessions_end, Pose2* pose) {
+  auto engine = std::make_unique<SlamEngine>();
+  std::vector<std::size_t> keyframes;
+  double stamp = 100.0;
+  bool begins = false;
+  for (int i = 0; i < times; ++i) {
+    for (int step = 0; step < 220; ++step) {
+      const double x = step < 110 ? 0.1 * step : 0.1 * (220 - step);
+      const Pose2 robot{x, 0.0, step < 110 ? 0.0 : hyselam::kPi};
+      const Pose2 odometry = Pose2{7.0, -3.0, 1.0} * robot;
+      if (begins) engine->startRunByOdometry(odometry);
+      begins = false;
+      engine->add(hall(robot, stamp += 1.0, -1.0), odometry);
+      work(*engine);
+    }
+    if (sessions_end) {
+      engine = std::make_unique<SlamEngine>(SlamParams{}, consolidated(engine->state()));
+      work(*engine);
+      begins = true;
+    }
+    keyframes.push_back(engine->keyframes().size());
+  }
+  *pose = Pose2{7.0, -3.0, 1.0}.inverse() * engine->pose();
+  return keyframes;
+}
+
+TEST(Consolidation, KeepsTheMapOfARobotThatNeverStopsAsLargeAsTheBuilding) {
+  Pose2 pose, pose_without;
+  const auto ended = keyframesToAndFro(6, true, &pose);
+  EXPECT_LE(ended.back(), ended[1] + ended[1] / 10);
+  const auto went_on = keyframesToAndFro(6, false, &pose_without);
+  EXPECT_GE(went_on.back(), 5 * went_on.front());
+  EXPECT_NEAR(distance(pose, pose_without), 0.0, 0.01);
+  EXPECT_NEAR(pose.x, 0.1, 0.1);  // of the hall, in which the odometry began
+  EXPECT_NEAR(pose.y, 0.0, 0.1);
+}
+
+TEST(Consolidation, ARunThatGoesOnByOdometryIsKnown) {
+  SlamEngine engine(SlamParams{}, firstVisit());
+  const Pose2 robot{11.5, 0.0, hyselam::kPi};
+  engine.startRunByOdometry(Pose2{7.0, -3.0, 1.0} * robot);
+  engine.add(hall(robot, 1000.0, -1.0), Pose2{7.0, -3.0, 1.0} * robot);
+  EXPECT_EQ(engine.runPlace(), RunPlace::kTied);
+  EXPECT_NEAR(engine.pose().x, 11.5, 0.05);
+  EXPECT_NEAR(engine.pose().y, 0.0, 0.05);
 }
 
 TEST(Consolidation, RefusesParametersOutOfRange) {

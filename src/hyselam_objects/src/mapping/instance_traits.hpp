@@ -15,4 +15,9 @@ inline bool isFurniture(const ObjectInstance& object) {
   return object.properties.count(kFurnitureKind) != 0;
 }
 
+inline void forgetOldStays(ObjectInstance& object) {
+  auto& all = object.history;
+  if (all.size() > kMostStays) all.erase(all.begin(), all.end() - kMostStays);
+}
+
 }  // namespace hyselam_objects

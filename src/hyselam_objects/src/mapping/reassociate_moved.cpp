@@ -42,6 +42,7 @@ void merge(ObjectMap& map, Id gone, Id found) {
   ObjectInstance& old = *map.find(gone);
   ObjectInstance& now = *map.find(found);
   now.history.insert(now.history.begin(), old.history.begin(), old.history.end());
+  forgetOldStays(now);
   now.detections += old.detections;
   now.described = now.described || old.described;
   if (now.kind == kUnknownKind) now.kind = old.kind;

@@ -49,6 +49,7 @@ void updateHistory(ObjectInstance& object, double stamp) {
   // Time may jump back, as when a bag is played again.
   if (history.empty() || std::abs(stamp - history.back().until) > kMaxAbsence) {
     history.push_back({stamp, stamp, object.pose->position});
+    forgetOldStays(object);
   }
   history.back().until = std::max(history.back().until, stamp);
   history.back().position = object.pose->position;

@@ -32,6 +32,9 @@ void SlamServerParams::describe(hyselam::ParameterVisitor& visit) {
   visit("state", state, "file gone on with at the start and saved; empty: none");
   visit("save_period", save_period, Range::between(0.0, 1e6), "s",
         "of wall time between savings; 0: only at the end and when asked");
+  visit("session_path", session_path, Range::atLeast(0.0), "m",
+        "driven, after which what the session adds nothing by is dropped and another one goes on: "
+        "the map becomes as large as the building; 0: only when it is loaded");
   visit("start_window", start_window, Range::aboveUpTo(0.0, SlamEngine::kMaxStartWindow), "m",
         "searched around the pose where a run starts in a known map");
   visit.renamed("start_turn", "start_angle");

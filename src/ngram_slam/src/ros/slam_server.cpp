@@ -52,7 +52,9 @@ SlamServer::Mapping::Mapping(const SlamServerParams& params, SlamState state)
     : name(ros::this_node::getName() + '@' + std::to_string(ros::WallTime::now().toNSec())),
       engine(params.slam, std::move(state)),
       jobs(params.slam.loop_latency),
-      segmenter(params.semantic) {
+      segmenter(params.semantic),
+      session_end((engine.keyframes().empty() ? 0.0 : engine.keyframes().back().path_length) +
+                  params.session_path) {
   segmentNew();
   published_words = engine.recognizer().text().words();
   published_matches = engine.matches().size();
@@ -155,6 +157,7 @@ bool SlamServer::onScan(const hyselam::LaserScan& scan, const Pose2& base_in_odo
     takeIn(scan.stamp);
     addScan(scan, base_in_odom);
     mapping_->jobs.noteScan(scan.stamp, &mapping_->engine);
+    if (later_scans_) later_scans_->push_back({scan, base_in_odom});
     last_scan_ = {stamp, base_in_odom};
     publishStatus();
     publishNewWords();
@@ -222,6 +225,7 @@ SlamServer::RunStart SlamServer::runStart(const Pose2& base_in_odom) const {
 
 /// With mutex_ held.
 void SlamServer::startRun(const Pose2& base_in_odom) {
+  later_scans_.reset();
   SlamEngine& engine = mapping_->engine;
   if (!engine.keyframes().empty() || initial_pose_) {
     const RunStart start = runStart(base_in_odom);
@@ -240,6 +244,7 @@ void SlamServer::startRun(const Pose2& base_in_odom) {
 void SlamServer::onTimeJump() {
   const Lock lock(mutex_);
   mapping_->engine.endRun();
+  later_scans_.reset();
   result_wait_.forget();
   next_scan_ = NextScan::kAfterJump;
   broadcaster_.last = ros::Time();

@@ -106,6 +106,7 @@ bool SlamServer::onLoad(hyselam_msgs::StatePath::Request& request,
     {
       const Lock lock(mutex_);
       std::swap(mapping_, mapping);
+      later_scans_.reset();
       ++epoch_;
       next_scan_ = NextScan::kAfterPause;
       initial_pose_.reset();
@@ -143,6 +144,7 @@ bool SlamServer::onPause(bool pause, std_srvs::Trigger::Response& out) {
   if (paused_ && !pause && next_scan_ == NextScan::kGoesOn && mapping_->localized)
     next_scan_ = NextScan::kAfterPause;
   if (paused_ != pause) ROS_INFO_STREAM(log_name_ << ' ' << out.message);
+  if (pause) later_scans_.reset();
   paused_ = pause;
   return true;
 }
@@ -191,6 +193,7 @@ void SlamServer::report(DiagnosticStatus& status) {
     addError("optimization: ", status_.job_error);
     addError("map: ", status_.map_error);
     addError("not saved: ", status_.save_error);
+    addError("the session goes on: ", status_.session_error);
     addValue(status, "paused", paused_);
     addValue(status, "scans while paused", status_.paused_scans);
     addValue(status, "publishing tf", params_.tf_broadcast && mapping_->localized);
@@ -207,6 +210,13 @@ void SlamServer::report(DiagnosticStatus& status) {
     addValue(status, "matches of words", engine.matches().size());
     addValue(status, "regions", mapping_->regions.size());
     addValue(status, "optimizations", c.optimizations);
+    addValue(status, "words", engine.recognizer().text().words());
+    addValue(status, "scans remembered", engine.scans());
+    addValue(status, "cells settled", engine.settled().cells.size());
+    if (params_.session_path > 0.0) {
+      addValue(status, "sessions ended", status_.sessions_ended);
+      addValue(status, "last end of a session [ms]", status_.session_ms);
+    }
     addValue(status, "looking for loops", mapping_->jobs.isOut());
     addValue(status, "loops and optimizations late", result_wait_.givenUp());
     addValue(status, "scans that hardly matched", status_.weak_matches);

@@ -168,6 +168,7 @@ void SlamServer::runMapper() {
       epoch = request->epoch;
       if (!request->keyframes.empty()) drawMap(*request, &mapper);
     }
+    changeSession();
     if (!params_.state.empty() && params_.save_period > 0.0 &&
         (ros::WallTime::now() - saved).toSec() >= params_.save_period) {
       saveIfChanged("now and then");

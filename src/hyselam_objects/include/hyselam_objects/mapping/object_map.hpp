@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <string>
@@ -73,6 +74,9 @@ struct ObjectStay {
   Point3 position;
 };
 
+/// Of an object the map remembers so many stays: more would say no more of how movable it is.
+constexpr std::size_t kMostStays = 200;
+
 /// An instance of a generic object (o of Eq. 3.7 with its properties O_F).
 struct ObjectInstance {
   Id id = 0;         ///< unique, never 0, never used again
@@ -88,8 +92,9 @@ struct ObjectInstance {
   int missed_detections = 0;       ///< number of frames that show its place free
   int overlooked = 0;              ///< number of frames that show something else there
   double last_seen = 0.0;
-  double existence = 0.5;           ///< probability that it is where the map says
-  std::vector<ObjectStay> history;  ///< oldest first; the last one is the present
+  double existence = 0.5;  ///< probability that it is where the map says
+  std::vector<ObjectStay>
+      history;  ///< oldest first, the newest kMostStays; the last is the present
 };
 
 /// R_ij = {W_R, E_R, M_R} of Eq. 3.8.

@@ -28,6 +28,9 @@ struct SlamServerParams {
   double transform_tolerance = 0.1;        ///< map -> odom is dated this far into the future [s]
   std::string state;          ///< file gone on with at the start and saved; empty: none
   double save_period = 60.0;  ///< [s] of wall time; 0: only at the end and when asked
+  /// A session ends after this path [m]: what it adds nothing by is dropped (ConsolidationParams)
+  /// while the robot drives, and another one goes on; 0: only when a map is loaded.
+  double session_path = 0.0;
   double start_window = 2.0;  ///< around the pose where a run starts in a known map [m], (0, 50]
   double start_angle = 1.0;   ///< [rad], 0..pi
   std::optional<double> initial_pose_x, initial_pose_y;  ///< [m]

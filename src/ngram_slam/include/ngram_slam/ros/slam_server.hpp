@@ -37,9 +37,9 @@ namespace ngram_slam {
 /// `dynamic_map`, `slam_graph`, `~save`, `~load`, `~pause`, `~resume`.
 ///
 /// Scans come on the queue of `nh`, which must serve one callback at a time. Loops are verified and
-/// poses optimized on one thread, maps drawn and saved on another, services answered on a third:
-/// none of them delays a scan by more than it takes to copy what it needs, but where a loop that
-/// counts is not there yet (SlamServerParams::loop_wait).
+/// poses optimized on one thread, maps drawn, saved and consolidated on another, services answered
+/// on a third: none of them delays a scan by more than it takes to copy what it needs, but where a
+/// loop that counts is not there yet (SlamServerParams::loop_wait).
 class SlamServer {
  public:
   /// Reads and checks the parameters of `private_nh` and the state, before anything is subscribed.
@@ -65,14 +65,17 @@ class SlamServer {
     std::uint32_t segmented = 0;  // observations
     std::size_t published_words = 0, published_matches = 0;
     int requantizations = 0;
+    double session_end;  // [m] of path
     std::uint64_t saved_scans = 0;
     bool localized = false;  // a scan has come: odomInMap() means something
   };
   /// For the diagnostics.
   struct Status {
     std::string job_error, map_error, save_error;
+    std::string session_error;
     double scan_ms = 0.0, max_scan_ms = 0.0, job_ms = 0.0, map_ms = 0.0, save_ms = 0.0;
-    std::size_t paused_scans = 0, weak_matches = 0;
+    double session_ms = 0.0;
+    std::size_t paused_scans = 0, weak_matches = 0, sessions_ended = 0;
     std::string changes;  // since the last session; nothing before a map is drawn
   };
   /// What a map is drawn from, copied from the engine.
@@ -108,6 +111,10 @@ class SlamServer {
     ros::Time stamp;
     hyselam::Pose2 odometry;
   };
+  struct LaterScan {
+    hyselam::LaserScan scan;
+    hyselam::Pose2 odometry;
+  };
   enum class NextScan { kGoesOn, kAfterPause, kAfterJump };
 
   bool onScan(const hyselam::LaserScan& scan, const hyselam::Pose2& base_in_odom,
@@ -136,6 +143,10 @@ class SlamServer {
   void runMapper();
   std::optional<MapRequest> awaitMapRequest();
   void drawMap(const MapRequest& request, PresentMap* mapper);
+  bool isSessionOver() const;
+  std::unique_ptr<Mapping> nextSession(SlamState state) const;
+  bool goOnWith(std::unique_ptr<Mapping>* next);
+  void changeSession();
   std::string saveState(const std::string& path);
   void saveIfChanged(const char* when);
   std::string pathOrDefault(const std::string& path) const;
@@ -154,6 +165,9 @@ class SlamServer {
   ros::WallTime last_scan_came_;  // 0: none did
   hyselam::ResultWait result_wait_{params_.loop_wait};
   NextScan next_scan_ = NextScan::kGoesOn;
+  /// Those that came since the session's map was copied to be consolidated; nothing: it was not, or
+  /// the copy is void.
+  std::optional<std::vector<LaterScan>> later_scans_;
   std::optional<hyselam::InitialPose> initial_pose_;  // not yet used
   Status status_;
   std::pair<RunPlace, int> published_place_{RunPlace::kFirst, -1};  // with ties withdrawn

@@ -138,6 +138,9 @@ class SlamEngine {
   /// window outside of 0 (excluded) to kMaxStartWindow, an angle outside of 0 to pi.
   void startRun(const hyselam::Pose2& base_in_map, double window = kDefaultStartWindow,
                 double angle = kDefaultStartAngle, RunTrust trust = RunTrust::kSupposed);
+  /// The same where odometry has gone on since the last keyframe of the map, which there must be:
+  /// a known place.
+  void startRunByOdometry(const hyselam::Pose2& base_in_odom);
   /// The same without any idea where: the whole map is searched.
   void startRunAnywhere();
 
@@ -171,6 +174,7 @@ class SlamEngine {
   hyselam::Pose2 odomInMap() const;
   /// Keyframes as nodes; odometry edges, followed by loop edges.
   hyselam_pose_graph::PoseGraph graph() const;
+  std::size_t scans() const { return state_.scans.size(); }  ///< whose poses are remembered
   /// Pose of every scan.
   std::vector<hyselam::StampedPose2> trajectory() const;
   /// Segments the path into words and finds their n-gram matches.

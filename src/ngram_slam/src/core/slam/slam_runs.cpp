@@ -16,6 +16,13 @@ using hyselam_scan_matching::IcpResult;
 using hyselam_scan_matching::SurfaceMap;
 using hyselam_scan_matching::SurfacePoints;
 
+namespace {
+
+constexpr double kOdometryWindow = 0.1;  // [m], [rad] searched where odometry gives the start
+constexpr double kOdometryDrift = 0.1;   // [m/m], [rad/m]
+
+}  // namespace
+
 void SlamEngine::startRun(const Pose2& base_in_map, double window, double angle, RunTrust trust) {
   if (!base_in_map.isFinite()) throw hyselam::ParameterError("base_in_map", "not finite", "finite");
   if (!(window > 0.0 && window <= kMaxStartWindow)) {
@@ -26,6 +33,14 @@ void SlamEngine::startRun(const Pose2& base_in_map, double window, double angle,
   }
   endRun();
   start_ = RunStart{base_in_map, window, angle, trust, false};
+}
+
+void SlamEngine::startRunByOdometry(const Pose2& base_in_odom) {
+  const SlamKeyframe& last = state_.keyframes.back();
+  const Pose2 driven = between(last.odometry, base_in_odom);
+  const double window = kOdometryWindow + kOdometryDrift * std::hypot(driven.x, driven.y);
+  startRun(last.pose * driven, std::min(window, kMaxStartWindow), std::min(window, hyselam::kPi),
+           RunTrust::kKnown);
 }
 
 void SlamEngine::startRunAnywhere() {
