@@ -250,8 +250,12 @@ export class Places {
   // What is no name is asked about,
   rename(id, name) {
     this.naming = false;
-    if (isRatherSaid(name)) this.askSurely(t("name_doubted", {name}), "name_anyway", () => this.move(id, name));
-    else this.move(id, name);
+    if (!isRatherSaid(name)) {
+      this.move(id, name);
+      return;
+    }
+    this.askSurely(t("name_doubted", {name}), "name_anyway", () => this.move(id, name));
+    this.card.querySelector("[data-key=unsure]")?.focus(); // a second Enter makes it no name
   }
 
   // and one in use elsewhere, which would be gone there.
