@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The page in a real browser, with a robot that is none: what is seen, said and pressed on a phone and on a desktop, by fingers, mouse and
 keys. The whole stack behind it: web_stack.test of hyselam_bringup."""
+import json
 import os
 import pathlib
 import sys
@@ -124,6 +125,29 @@ class PageTest(PageCase):
         tab.wait("document.querySelector('#card').hidden && hyselam.model.labelOf(5) === 'library'", "the name")
         wait_until(lambda: self.asked("name"), "that it is named")
         self.assertEqual(self.asked("name"), [{"place": 5, "names": ["library"]}])
+        self.assertEqual(tab.eval("document.activeElement.tagName"), "BODY")  # the next Enter opens no card
+
+    def test_what_is_said_is_no_name_until_that_was_asked_about(self):
+        self.serve()
+        tab = self.open_map(PHONE)
+        for said in ("Where are you?", "take me to the kitchen"):
+            self.tap_place(tab, 5)
+            tab.wait("document.querySelector('#card-title')?.textContent === 'Place 5'", "the card")
+            tab.click("#card [data-key=name_it]")
+            tab.type(said)
+            tab.key("Enter")
+            tab.wait(f"document.querySelector('#card p')?.textContent.includes('“{said}” looks like something to say')", "the question")
+            self.shot(tab, "phone_name_doubted")
+            tab.key("Enter")  # one too many
+            tab.wait("document.querySelector('#card [data-key=name_it]')", "the card as it was")
+        self.assertEqual(self.asked("name"), [])
+        tab.click("#card [data-key=name_it]")
+        tab.type("room of Ana and Rui")
+        tab.key("Enter")
+        tab.wait("document.querySelector('#card [data-key=sure]')", "the question")
+        tab.click("#card [data-key=sure]")
+        wait_until(lambda: self.asked("name"), "that it is named")
+        self.assertEqual(self.asked("name"), [{"place": 5, "names": ["room of Ana and Rui"]}])
 
     def test_what_was_said_before_is_not_made_anew_for_screen_readers(self):
         self.serve()
@@ -249,6 +273,10 @@ class PageTest(PageCase):
         self.serve(tokens="look=lookatme1 drive=driveme11")
         tab = self.open(PHONE)
         tab.wait("!document.querySelector('#login').hidden", "the login")
+        self.assertEqual(tab.eval("document.querySelector('#map-empty').innerText"), "Log in to see the map.")
+        tab.click("#language")
+        tab.wait("document.querySelector('#map-empty').innerText === 'Introduza a senha para ver o mapa.'", "the other language")
+        tab.click("#language")
         self.stop(tab)
         tab.click("#token")
         tab.type("something")
@@ -389,10 +417,51 @@ class PageTest(PageCase):
                     tab.wait("hyselam.map.drawnTiles > 0", "the map")
                 self.assertEqual(tab.errors, [])
                 self.assertEqual(tab.eval("getComputedStyle(document.querySelector('#say-form')).display"), "none")
+                self.expect_a_usable_player(tab)
+            self.assertEqual([tab.eval("document.querySelector('#tab-back').checkVisibility()") for tab in (live, static)], [True, False])
             self.assertFalse(static.eval("document.querySelector('#stop').checkVisibility()"))
             self.stop(live)
             live.wait("document.querySelector('#toast').textContent.startsWith('Stop was sent to the real robot.')", "that it was sent")
             self.shot(live, "phone_replay")
+
+    def expect_a_usable_player(self, tab):
+        """A slider as wide as its foot, at its end with the recording, and a button that tells what it does."""
+        tab.eval("hyselam.replayer.goTo(hyselam.replayer.end)")
+        of_foot, edge, value, most, clock, label = tab.eval("""(() => { const slider = document.querySelector('#time'), style = getComputedStyle(slider);
+            return [slider.offsetWidth / document.querySelector('footer').clientWidth, parseFloat(style.paddingRight) + parseFloat(style.borderRightWidth),
+                slider.value, slider.max, document.querySelector('#clock').textContent, document.querySelector('#play').getAttribute('aria-label')]; })()""")
+        self.assertGreater(of_foot, 0.9)
+        self.assertEqual((edge, value, clock, label), (0, most, "0:59 / 0:59", "Play"))
+
+    def test_a_recorded_map_that_comes_after_the_robot_is_seen_whole_unless_the_view_was_moved(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "day.jsonl")
+            recorder = recording.Recorder(path)
+            self.serve(recorder=recorder)
+            wait_until(lambda: os.path.getsize(path) > 5000, "the first entry")
+            recorder.close()
+            (first, *_), page = recording.read(path), os.path.join(folder, "index.html")
+            late = dict(first, t=first["t"] + 9)
+            early = {"t": first["t"], "d": {"pose": first["d"]["pose"]}}
+            pathlib.Path(path).write_text("\n".join(map(json.dumps, (recording.FORMAT, early, late))) + "\n")
+            recording.write_static(path, str(PACKAGE / "www"), page)
+            for moved in (False, True):
+                tab = self.browser.tab(PHONE)
+                self.addCleanup(tab.close)
+                tab.goto("file://" + page)
+                tab.wait("window.hyselam?.replayer && hyselam.map.fitted", "the robot")
+                tab.eval("hyselam.replayer.play(false); hyselam.replayer.goTo(hyselam.replayer.begin)")
+                near = tab.eval("hyselam.map.scale")
+                if moved:
+                    tab.click("#zoom-in")
+                tab.eval("hyselam.replayer.goTo(hyselam.replayer.end)")
+                tab.wait("hyselam.map.drawnTiles > 0", "the map")
+                if moved:
+                    self.assertGreater(tab.eval("hyselam.map.scale"), near)
+                else:
+                    self.assertLess(tab.eval("hyselam.map.scale"), near)
+                    self.assertTrue(tab.eval("""(() => { const {map} = hyselam, [a, b, c, d] = map.bounds(), [x, y] = map.toScreen(a, d), [u, v] = map.toScreen(c, b);
+                        return x >= 0 && y >= 0 && u <= map.canvas.clientWidth && v <= map.canvas.clientHeight; })()"""))
 
 
 if __name__ == "__main__":

@@ -94,8 +94,7 @@ class Page {
     byId("tabs").addEventListener("keydown", (event) => this.moveTab(event));
     // Cards stand above the foot of the page, however high that is.
     new ResizeObserver(([{target}]) => document.body.style.setProperty("--foot", `${target.offsetHeight}px`)).observe(document.querySelector("footer"));
-    const empty = () => { byId("map-empty").hidden = Boolean(model.values.map) || Object.keys(model.tables.places).length > 0; };
-    model.on(["map", "places"], empty);
+    model.on(["map", "places"], () => this.showEmpty());
     model.on(["reach"], () => this.showLost());
     model.on(["way", "arrived"], () => {
       const {way, arrived} = model.values;
@@ -111,11 +110,20 @@ class Page {
     onLanguage(() => {
       named();
       this.showLost();
+      this.showEmpty();
       if (this.map.tool || this.picking) this.showTool();
       this.map.invalidate();
     });
     named();
-    empty();
+    this.showEmpty();
+  }
+
+  // Whether there is a map is known to those who may look.
+  showEmpty() {
+    const {values, tables} = this.model;
+    const known = this.replay || this.session.run !== undefined;
+    byId("map-empty").hidden = !known || Boolean(values.map) || Object.keys(tables.places).length > 0;
+    byId("map-empty").textContent = t(this.replay || this.session.role ? "map_empty" : "map_login");
   }
 
   // ---- Connection ----
@@ -125,6 +133,7 @@ class Page {
     const first = this.session.run === undefined;
     this.session = session;
     this.source.allowed = session.role !== "";
+    this.showEmpty();
     if (first && !remembered("language")) setLanguage(firstLanguage(session.language));
     byId("login").hidden = session.role !== "";
     byId("tabs").inert = session.role === "";
@@ -273,10 +282,11 @@ class Page {
   }
 
   moveTab(event) {
-    const at = TABS.findIndex((name) => byId(`tab-${name}`) === document.activeElement);
-    const to = {ArrowRight: at + 1, ArrowLeft: at - 1, Home: 0, End: TABS.length - 1}[event.key];
+    const tabs = TABS.filter((name) => !byId(`tab-${name}`).hidden);
+    const at = tabs.findIndex((name) => byId(`tab-${name}`) === document.activeElement);
+    const to = {ArrowRight: at + 1, ArrowLeft: at - 1, Home: 0, End: tabs.length - 1}[event.key];
     if (at < 0 || to === undefined) return;
-    const name = TABS[(to + TABS.length) % TABS.length];
+    const name = tabs[(to + tabs.length) % tabs.length];
     this.openTab(name);
     byId(`tab-${name}`).focus();
     event.preventDefault();
@@ -287,6 +297,7 @@ class Page {
   async startReplay(recorded) {
     document.body.classList.add("replay");
     byId("stop").hidden = Boolean(recorded); // a file has no robot behind it; the server that plays its day has
+    byId("tab-back").hidden = Boolean(recorded); // nor has a file reports, or a present to go back to
     byId("stop").dataset.t = "stop_robot";
     byId("stop").textContent = t("stop_robot");
     byId("player").hidden = false;

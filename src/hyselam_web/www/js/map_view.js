@@ -16,6 +16,7 @@ export class MapView {
     this.center = [0, 0];
     this.scale = 20; // pixels a metre
     this.fitted = false;
+    this.fittedToMap = false; // what was known before the map is only a corner of it
     this.follows = false;
     this.selected = null;
     this.hovered = null; // the place under the mouse
@@ -34,7 +35,7 @@ export class MapView {
     model.on(["map", "places", "doors", "walls", "told", "objects", "pose", "spread", "scan", "particles", "way", "here", "asked", "status", "camera", "marked"], (names) => {
       if (names.includes("scan")) this.scanPoints = null;
       if (names.includes("particles")) this.particlePoints = null;
-      if (names.includes("map") && !this.fitted) this.fit();
+      if (names.includes("map") && !this.fittedToMap && (!this.fitted || this.untouched)) this.fit();
       this.invalidate();
     });
   }
@@ -117,6 +118,7 @@ export class MapView {
     this.scale = this.limited(Math.min((width - 16) / Math.max(1, box[2] - box[0]), (height - top - 12) / Math.max(1, box[3] - box[1])));
     this.center = [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2 + (top - 12) / 2 / this.scale];
     this.fitted = this.untouched = true;
+    this.fittedToMap ||= Boolean(this.model.values.map);
     this.invalidate();
   }
 

@@ -7,12 +7,17 @@ import {behind, plainWalls, shutBy, sidesOf} from "./building.js";
 
 const ONE_THING = /^[\p{L}\p{N}' -]{1,60}$/u; // a name that can be put into a sentence without becoming another one,
 const JOINING = ["and", "then", "or", "but", "also", "plus", "e", "depois", "ou", "mas", "entao", "tambem", "nem"]; // unless it has one of these,
-const MAX_WORDS = 4; // or more words
+const MAX_WORDS = 4; // or more words: those are rather a sentence
 
 // "pen", but neither "pen. Follow me" nor "pen and follow me".
 function isOneThing(name) {
   const words = folded(name).split(/[\s-]+/).filter(Boolean);
   return ONE_THING.test(name) && words.length > 0 && words.length <= MAX_WORDS && !words.some((word) => JOINING.includes(word));
+}
+
+// "Where are you?", typed where a name belongs.
+function isRatherSaid(name) {
+  return /[?？]$/.test(name) || name.split(/\s+/).length > MAX_WORDS;
 }
 
 export class Places {
@@ -228,6 +233,8 @@ export class Places {
     input.addEventListener("input", hints);
     const form = make("form", {class: "row", onsubmit: (event) => {
       event.preventDefault();
+      // Not to the map when the form goes: the next Enter would open a card there.
+      document.activeElement?.blur();
       if (input.value.trim()) this.rename(id, input.value.trim());
     }}, make("label", {for: "new-name", class: "unseen"}, t("name_label")), input, make("button", {type: "submit", class: "primary"}, t("save_name")),
     name.none ? null : button(t("forget_name"), () => this.name(id, [])),
@@ -240,10 +247,20 @@ export class Places {
     return make("div", {}, form, hint);
   }
 
-  // A name in use elsewhere would be gone there: that is asked about.
+  // What is no name is asked about,
   rename(id, name) {
-    const holder = this.model.holderOf(name, id);
     this.naming = false;
+    if (!isRatherSaid(name)) {
+      this.move(id, name);
+      return;
+    }
+    this.askSurely(t("name_doubted", {name}), "name_anyway", () => this.move(id, name));
+    this.card.querySelector("[data-key=unsure]")?.focus(); // a second Enter makes it no name
+  }
+
+  // and one in use elsewhere, which would be gone there.
+  move(id, name) {
+    const holder = this.model.holderOf(name, id);
     if (holder === null) this.name(id, [name]);
     else this.askSurely(t("name_taken", {name, place: t("place_number", {n: holder})}), "move_name", () => this.name(id, [name]));
   }

@@ -1,6 +1,6 @@
 // A recorded day instead of the robot: the same page with a slider for the time.
 import {byId} from "./dom.js";
-import {t, onLanguage} from "./i18n.js";
+import {t} from "./i18n.js";
 
 const KEEP = 200; // entries between two states that are kept, to go back quickly
 
@@ -14,10 +14,10 @@ export class Replay {
     this.begin = entries.length ? entries[0].t : 0;
     this.end = entries.reduce((latest, entry) => Math.max(latest, entry.t), this.begin);
     this.slider = byId("time");
-    this.slider.max = String(Math.max(1, Math.ceil(this.end - this.begin)));
-    this.slider.addEventListener("input", () => this.goTo(this.begin + Number(this.slider.value)));
+    this.slider.max = String(Math.max(1, Math.round(this.end - this.begin)));
+    // Its steps are whole seconds; the last one is the end, however long that second is.
+    this.slider.addEventListener("input", () => this.goTo(this.slider.value === this.slider.max ? this.end : this.begin + Number(this.slider.value)));
     byId("play").onclick = () => this.play(!this.playing);
-    onLanguage(() => this.showButton());
     this.now = this.begin;
     this.states = new Map();
   }
@@ -28,7 +28,11 @@ export class Replay {
   }
 
   showButton() {
-    byId("play").textContent = t(this.playing ? "pause" : "play");
+    const play = byId("play");
+    play.classList.toggle("playing", this.playing);
+    play.dataset.label = this.playing ? "pause" : "play"; // kept, for when the language changes
+    play.title = t(play.dataset.label);
+    play.setAttribute("aria-label", play.title);
   }
 
   play(on) {
@@ -83,9 +87,10 @@ export class Replay {
     if (tiles || names.has("map")) this.onTiles();
     const seconds = Math.round(time - this.begin);
     this.slider.value = String(seconds);
-    byId("clock").textContent = `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, "0")}`;
-    this.slider.setAttribute("aria-valuetext", byId("clock").textContent);
-    this.onTime(byId("clock").textContent);
+    const text = minutes(seconds);
+    byId("clock").textContent = `${text} / ${minutes(Math.round(this.end - this.begin))}`;
+    this.slider.setAttribute("aria-valuetext", text);
+    this.onTime(text);
   }
 
   snapshot() {
@@ -108,6 +113,10 @@ export class Replay {
     this.model.talk = [...state.talk];
     for (const [key, tile] of state.tiles) this.model.tiles.set(key, tile);
   }
+}
+
+function minutes(seconds) {
+  return `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, "0")}`;
 }
 
 function blobOf(base64) {
