@@ -189,9 +189,23 @@ TEST(FindModelTool, TellsPosesAndWritesJson) {
             0)
       << fileBytes(directory / "stderr");
   EXPECT_EQ(fileBytes(directory / "stdout").substr(0, 6), "found ");
+  EXPECT_NE(fileBytes(directory / "stdout").find(": centre at "), std::string::npos);
   std::ifstream file(directory / "j.json");
   const nlohmann::json json = nlohmann::json::parse(file);
   ASSERT_FALSE(json.at("found").empty());
+  // The model is a part of the scene, left where it was: so its centre is the mean of its points.
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  const OrganizedCloud model = largestThing(scene);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < model.size(); ++i) {
+    if (!model.isValid(i)) continue;
+    mean += model.points[i].cast<double>();
+    ++count;
+  }
+  mean /= static_cast<double>(count);
+  const auto centre = json.at("found")[0].at("centre_in_scene").get<std::vector<double>>();
+  ASSERT_EQ(centre.size(), 3u);
+  EXPECT_LT((Eigen::Vector3d(centre.data()) - mean).norm(), 0.01);
   for (const auto& found : json.at("found")) {
     EXPECT_EQ(found.at("model_in_scene").size(), 4u);
     EXPECT_GE(found.at("probability").get<double>(), 0.0);

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <fstream>
 #include <iostream>
 
+#include "hyselam_common/testing/program_run.hpp"
 #include "hyselam_objects/language/fill_map.hpp"
 
 using hyselam_objects::FillMap;
@@ -384,6 +386,67 @@ TEST(ObjectText, AsksToBeShownUnknownKinds) {
   EXPECT_EQ(fill.showRequest("pen"),
             "I do not know what a pen looks like. To show me, hold one before my camera and say "
             "what it is.");
+}
+
+TEST(ObjectText, TellsThePositionWhereNoPlaceIsKnown) {
+  const ObjectParser parser = ObjectParser::shipped("en");
+  ObjectMap map;
+  FillMap fill(parser, map);
+  fill.process("There is a red cup in the kitchen. There is a pen in the lab.");
+  ASSERT_EQ(map.objects.size(), 2u);
+  for (auto& object : map.objects) {
+    object.pose.emplace();
+    object.pose->position = {28.62, -0.04, 0.7};
+  }
+  map.relations.erase(
+      std::remove_if(map.relations.begin(), map.relations.end(),
+                     [&](const auto& r) { return map.find(r.object)->kind == "cup"; }),
+      map.relations.end());
+  EXPECT_EQ(fill.process("Where is the cup?").front().text, "The red cup is at (28.6, 0.0).");
+  EXPECT_EQ(fill.process("Where is the pen?").front().text, "The pen is in the lab.");
+}
+
+TEST(ObjectText, ManyFurnituresArePieces) {
+  const ObjectParser parser = ObjectParser::shipped("en");
+  ObjectMap map;
+  FillMap fill(parser, map);
+  fill.process("There are two yellow chairs in the kitchen.");
+  ASSERT_EQ(map.objects.size(), 2u);
+  for (auto& object : map.objects) object.kind = "furniture";  // as the camera has it
+  EXPECT_EQ(fill.process("What is in the kitchen?").front().text,
+            "There are two yellow pieces of furniture.");
+}
+
+TEST(DescribeObjectsTool, AQuestionWritesNothing) {
+  const hyselam::testing::TemporaryDirectory folder;
+  const std::string map = folder / "objects.xml";
+  const auto say = [&](const std::string& text) {
+    return hyselam::testing::runProgram(
+        HYSELAM_TOOLS "/describe_objects '" + text + "' --map " + map, folder);
+  };
+  EXPECT_TRUE(hyselam::testing::refused(say("Where is the pen?"), map + ": does not exist"));
+  EXPECT_FALSE(std::ifstream(map).good());
+  // The first telling creates it.
+  EXPECT_EQ(say("There is a pen in the kitchen. Where is the pen?").status, 0);
+  const std::string told = hyselam::testing::fileBytes(map);
+  EXPECT_NE(told.find("pen"), std::string::npos);
+  // Even bytes that the program would write otherwise stay.
+  std::ofstream(map, std::ios::app) << "<!-- kept -->\n";
+  EXPECT_EQ(say("Where is the pen?").output, "The pen is in the kitchen.\n");
+  EXPECT_EQ(hyselam::testing::fileBytes(map), told + "<!-- kept -->\n");
+}
+
+TEST(DescribeObjectsTool, SaysThatThereIsNoCamera) {
+  const hyselam::testing::TemporaryDirectory folder;
+  for (const auto& [text, told] :
+       {std::pair<std::string, std::string>{"This is a cup.", "no camera"},
+        {"Isto é uma chávena.", "Não há aqui uma câmara"}}) {
+    const auto run = hyselam::testing::runProgram(
+        HYSELAM_TOOLS "/describe_objects '" + text + "' --map " + (folder / "o.xml"), folder);
+    EXPECT_EQ(run.status, 0) << run.errors;
+    EXPECT_NE(run.output.find(told), std::string::npos) << run.output;
+    EXPECT_EQ(run.output.find("look at it"), std::string::npos) << run.output;
+  }
 }
 
 TEST(ObjectText, SurvivesAnyBytes) {

@@ -166,7 +166,7 @@ ObjectReply FillMap::answerText(const ObjectStatement& question, const std::vect
   }
   if (question.intent == "where_is" || question.intent == "who_has") {
     ObjectReply out = reply(ReplyKind::kAnswer, "where");
-    out.text = sentencesOf(factsOf(objects, true));
+    out.text = sentencesOf(factsOf(objects, true, "where", true));
     if (question.intent == "who_has") out.text = phraseText("who_has") + " " + out.text;
     return out;
   }
@@ -285,6 +285,10 @@ std::string FillMap::showRequest(const std::string& kind) const {
 
 std::string FillMap::learnedReply(const std::string& kind) const {
   return contracted(phraseText("learnt", {{"what", formed("a", kind, {{"what", kind}})}}));
+}
+
+std::string FillMap::noCameraReply(const std::string& kind) const {
+  return contracted(phraseText("no_camera", {{"what", formed("a", kind, {{"what", kind}})}}));
 }
 
 }  // namespace hyselam_objects

@@ -1,6 +1,8 @@
 // FillMap: the words of the replies.
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdio>
 
 #include "hyselam_objects/language/fill_map.hpp"
 #include "object_words.hpp"
@@ -189,11 +191,23 @@ std::string FillMap::objectLocation(Id object) const {
   return contracted(text);
 }
 
+std::string FillMap::measuredLocation(Id object) const {
+  const ObjectInstance* instance = map_.find(object);
+  if (instance == nullptr || !instance->pose) return "";
+  // Rounded first: no "-0.0".
+  const auto rounded = [](double metres) { return std::round(10.0 * metres) / 10.0 + 0.0; };
+  char position[80];
+  std::snprintf(position, sizeof(position), "(%.1f, %.1f)", rounded(instance->pose->position.x),
+                rounded(instance->pose->position.y));
+  return phraseText("at_position", {{"position", position}});
+}
+
 std::vector<std::string> FillMap::factsOf(const std::vector<Id>& objects, bool definite,
-                                          const std::string& key) const {
+                                          const std::string& key, bool with_positions) const {
   std::vector<std::pair<std::string, std::vector<Id>>> groups;  // by where they are
   for (const Id id : objects) {
-    const std::string where = objectLocation(id);
+    std::string where = objectLocation(id);
+    if (where.empty() && with_positions) where = measuredLocation(id);
     const auto same = std::find_if(groups.begin(), groups.end(),
                                    [&](const auto& group) { return group.first == where; });
     if (same == groups.end()) {

@@ -1,5 +1,6 @@
 // describe_objects (TEXT | -) --map OBJECTS.xml: records what people say about objects in an object
 // map, and answers questions.
+#include <algorithm>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -34,6 +35,13 @@ hyselam_objects::ObjectParser parserOf(const std::vector<std::string>& grammars)
   return hyselam_objects::ObjectParser(languages);
 }
 
+/// Whether a text was nothing but questions.
+bool asksOnly(const std::vector<hyselam_objects::ObjectReply>& replies) {
+  return !replies.empty() && std::all_of(replies.begin(), replies.end(), [](const auto& each) {
+    return each.kind == hyselam_objects::ReplyKind::kAnswer;
+  });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -43,7 +51,11 @@ int main(int argc, char** argv) {
   std::string text, map_path, topology_path, dictionary_path, place;
   std::vector<std::string> grammars;
   app.add_option("TEXT", text, "sentences; - reads them from the standard input")->required();
-  app.add_option("--map", map_path, "object map, loaded if it exists, and written")->required();
+  app.add_option(
+         "--map", map_path,
+         "object map, loaded if it exists, and written if something was told; the first telling "
+         "creates it")
+      ->required();
   app.add_option("--topology", topology_path, "topological map whose places are linked");
   app.add_option("--dictionary", dictionary_path, "object dictionary: the kinds that are known");
   app.add_option("--here", place, "the place where the robot is");
@@ -53,7 +65,9 @@ int main(int argc, char** argv) {
   return hyselam::runTool(argc, argv, app, [&] {
     if (text == "-") text.assign(std::istreambuf_iterator<char>(std::cin), {});
     hyselam_objects::ObjectMap map;
-    if (exists(map_path)) map = hyselam_objects::loadObjectMap(map_path);
+    const bool is_new = !exists(map_path);
+    if (!is_new) map = hyselam_objects::loadObjectMap(map_path);
+    const hyselam_objects::ObjectMap before = map;
     hyselam_objects::ObjectDictionary dictionary;
     if (!dictionary_path.empty()) dictionary = hyselam_objects::loadDictionary(dictionary_path);
     const hyselam_objects::ObjectParser parser = parserOf(grammars);
@@ -61,11 +75,17 @@ int main(int argc, char** argv) {
     fill.setRobotPlace(place);
     nlohmann::json replies = nlohmann::json::array();
     const auto said = fill.process(text);
+    if (is_new && asksOnly(said)) {
+      throw hyselam::InputError(map_path, "", "does not exist; a question does not create it");
+    }
     for (const hyselam_objects::ObjectReply& reply : said) {
-      std::cout << reply.text << "\n";
+      // There is no camera here: "this is a cup" shows nothing.
+      const bool shown = reply.code == "shown";
+      const std::string reply_text = shown ? fill.noCameraReply(reply.kind_of_object) : reply.text;
+      std::cout << reply_text << "\n";
       replies.push_back({{"kind", toString(reply.kind)},
-                         {"code", reply.code},
-                         {"text", reply.text},
+                         {"code", shown ? "no_camera" : reply.code},
+                         {"text", reply_text},
                          {"objects", reply.objects},
                          {"places", reply.places}});
     }
@@ -79,7 +99,7 @@ int main(int argc, char** argv) {
     if (!dictionary_path.empty() && !to_show.empty()) {
       std::cout << fill.showRequest(to_show) << "\n";
     }
-    hyselam_objects::saveXml(map_path, map);
+    if (!(map == before)) hyselam_objects::saveXml(map_path, map);
     return nlohmann::json{{"replies", replies},
                           {"objects", hyselam_objects::summaryLines(map)},
                           {"unknown_kinds", unknown},

@@ -15,19 +15,34 @@ namespace {
 
 using namespace hyselam_objects;  // NOLINT: a program, not a header
 
-std::string lineOf(const FoundModel& found) {
+/// Mean of the points of a model.
+Eigen::Vector3d centreOf(const OrganizedCloud& model) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < model.size(); ++i) {
+    if (!model.isValid(i)) continue;
+    sum += model.points[i].cast<double>();
+    ++count;
+  }
+  return sum / static_cast<double>(count);  // findModel() has refused models without points
+}
+
+/// `centre`: of the model, in the scene.
+std::string lineOf(const FoundModel& found, const Eigen::Vector3d& centre) {
   const Eigen::Vector3d at = found.model_in_scene.translation();
   const Eigen::AngleAxisd turn(found.model_in_scene.linear());
-  char text[200];
+  char text[300];
   std::snprintf(text, sizeof(text),
-                "  probability %.3f: origin at %.3f %.3f %.3f m, turned by %.1f deg; %zu "
-                "correspondences, %.0f %% visible, %.0f %% of that covered",
-                found.probability, at.x(), at.y(), at.z(), hyselam::degrees(turn.angle()),
-                found.correspondences, 100.0 * found.visible, 100.0 * found.coverage);
+                "  probability %.3f: centre at %.3f %.3f %.3f m (origin of the model at %.3f %.3f "
+                "%.3f m), turned by %.1f deg; %zu correspondences, %.0f %% visible, %.0f %% of "
+                "that covered",
+                found.probability, centre.x(), centre.y(), centre.z(), at.x(), at.y(), at.z(),
+                hyselam::degrees(turn.angle()), found.correspondences, 100.0 * found.visible,
+                100.0 * found.coverage);
   return text;
 }
 
-nlohmann::json jsonOf(const FoundModel& found) {
+nlohmann::json jsonOf(const FoundModel& found, const Eigen::Vector3d& centre) {
   nlohmann::json rows = nlohmann::json::array();
   for (int row = 0; row < 4; ++row) {
     nlohmann::json values = nlohmann::json::array();
@@ -37,6 +52,7 @@ nlohmann::json jsonOf(const FoundModel& found) {
     rows.push_back(values);
   }
   return {{"model_in_scene", rows},
+          {"centre_in_scene", {centre.x(), centre.y(), centre.z()}},
           {"probability", found.probability},
           {"correspondences", found.correspondences},
           {"coverage", found.coverage},
@@ -49,7 +65,8 @@ nlohmann::json jsonOf(const FoundModel& found) {
 int main(int argc, char** argv) {
   CLI::App app(
       "Finds a model, given as a point cloud of its surface, in a scene seen from one point. Tells "
-      "nothing where the model is not, and each place where it is once, with a probability.",
+      "nothing where the model is not, and each place where it is once, with a probability: its "
+      "centre (mean of the model's points) in the scene, and how the model was moved and turned.",
       "find_model");
   std::string model_file, scene_file;
   FindModelParams params;
@@ -79,9 +96,11 @@ int main(int argc, char** argv) {
     std::cout << (found.empty() ? "not found" : "found " + std::to_string(found.size())) << " in "
               << 1e3 * seconds << " ms\n";
     nlohmann::json poses = nlohmann::json::array();
+    const Eigen::Vector3d model_centre = centreOf(model.cloud);
     for (const FoundModel& each : found) {
-      std::cout << lineOf(each) << "\n";
-      poses.push_back(jsonOf(each));
+      const Eigen::Vector3d centre = each.model_in_scene * model_centre;
+      std::cout << lineOf(each, centre) << "\n";
+      poses.push_back(jsonOf(each, centre));
     }
     return nlohmann::json{{"found", poses}, {"seconds", seconds}};
   });

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <iostream>
 #include <map>
+#include <set>
 #include <string>
 
 #include "hyselam_common/errors.hpp"
@@ -26,16 +27,25 @@ struct Options {
   double frame_period = 0.5, unconfirmed_for = 20.0;  // [s], as the nodelet has them
 };
 
+/// Of the transforms of a bag.
+struct Frames {
+  std::set<std::string> all, children;
+};
+
 /// All transforms of a bag, those between frames of all times.
-void readTransforms(const rosbag::Bag& bag, tf2::BufferCore& to) {
+Frames readTransforms(const rosbag::Bag& bag, tf2::BufferCore& to) {
+  Frames frames;
   for (const rosbag::MessageInstance& m :
        rosbag::View(bag, rosbag::TopicQuery(std::vector<std::string>{"/tf", "/tf_static"}))) {
     const tf2_msgs::TFMessage::ConstPtr msg = m.instantiate<tf2_msgs::TFMessage>();
     if (msg == nullptr) continue;
     for (const auto& each : msg->transforms) {
       to.setTransform(each, "bag", m.getTopic() == "/tf_static");
+      frames.all.insert({each.header.frame_id, each.child_frame_id});
+      frames.children.insert(each.child_frame_id);
     }
   }
+  return frames;
 }
 
 Eigen::Isometry3d poseOf(const tf2::BufferCore& transforms, const std::string& map_frame,
@@ -61,7 +71,7 @@ class BagMapper {
     } catch (const rosbag::BagException& e) {
       throw hyselam::InputError(options_.bag, "", e.what());
     }
-    readTransforms(bag, transforms_);
+    const Frames frames = readTransforms(bag, transforms_);
     const std::vector<std::string> topics{options_.camera + "/depth/camera_info",
                                           options_.camera + "/depth/image_raw",
                                           options_.camera + "/color/image_raw"};
@@ -71,8 +81,10 @@ class BagMapper {
           camera_ = cameraFromInfo(*info);
       } else if (m.getTopic() == topics[1]) {
         depth_ = m.instantiate<sensor_msgs::Image>();
+        depth_images_ += depth_ != nullptr;
       } else {
         color_ = m.instantiate<sensor_msgs::Image>();
+        color_images_ += color_ != nullptr;
       }
       const bool pair = camera_ && depth_ != nullptr && color_ != nullptr &&
                         depth_->header.stamp == color_->header.stamp;
@@ -80,7 +92,7 @@ class BagMapper {
     }
     if (frames_ == 0) {
       throw hyselam::InputError(options_.bag, options_.camera,
-                                "has no depth and color images of equal stamps with a known pose");
+                                without_pose_ == 0 ? withoutImages() : withoutPose(frames));
     }
     mapper_.consolidate(mapper_.time() - options_.unconfirmed_for);
     told = {{"frames", frames_},
@@ -99,6 +111,29 @@ class BagMapper {
     }
     last_ = stamp;
     return true;
+  }
+
+  std::string withoutImages() const {
+    return "has no depth and color images of equal stamps (depth: " +
+           std::to_string(depth_images_) + ", color: " + std::to_string(color_images_) +
+           ", camera_info: " + (camera_ ? "there" : "missing") + ")";
+  }
+
+  /// Images are there, but no pose of any: what the bag has, and which frame would do.
+  std::string withoutPose(const Frames& frames) const {
+    std::string names, instead;
+    for (const std::string& frame : frames.all) {
+      names += (names.empty() ? "" : ", ") + frame;
+      const bool is_root = frames.children.count(frame) == 0;
+      if (instead.empty() && is_root &&
+          transforms_.canTransform(frame, depth_->header.frame_id, depth_->header.stamp)) {
+        instead = "use --frame " + frame + ", or ";
+      }
+    }
+    return "images are there (" + std::to_string(without_pose_) +
+           " frames), but no transform from " + options_.map_frame + " to " +
+           depth_->header.frame_id + "; frames of the bag: " + (names.empty() ? "none" : names) +
+           "; " + instead + "localize first";
   }
 
   void addFrame() {
@@ -129,6 +164,7 @@ class BagMapper {
   sensor_msgs::Image::ConstPtr depth_, color_;
   ros::Time last_;
   std::size_t frames_ = 0, without_pose_ = 0, held_back_ = 0, detections_ = 0;
+  std::size_t depth_images_ = 0, color_images_ = 0;
 };
 
 }  // namespace

@@ -87,6 +87,9 @@ class FillMap {
   std::string showRequest(const std::string& kind) const;
   /// "Now I know what a pen looks like."
   std::string learnedReply(const std::string& kind) const;
+  /// "There is no camera here to look at a pen." Where nothing can be shown: instead of the reply
+  /// with the code "shown".
+  std::string noCameraReply(const std::string& kind) const;
 
   /// The map is another one: nothing was mentioned yet.
   void resetContext();
@@ -220,9 +223,13 @@ class FillMap {
   /// "on the table in the kitchen"; "" if nothing is known.
   std::string objectLocation(Id object) const;
   /// "a PC and two pens are on the table in the office", one for each location.
-  /// With `key` "gone": "the pen is no longer on the table".
+  /// With `key` "gone": "the pen is no longer on the table". `with_positions`: of those with no
+  /// other location the measured position, if there is one.
   std::vector<std::string> factsOf(const std::vector<Id>& objects, bool definite,
-                                   const std::string& key = "where") const;
+                                   const std::string& key = "where",
+                                   bool with_positions = false) const;
+  /// "at (28.6, -7.0)", x and y in the frame of the map [m]; "" if it was never seen.
+  std::string measuredLocation(Id object) const;
   std::string enumeration(const std::vector<std::string>& items, bool choice = false) const;
   std::string placeNames(const std::vector<Id>& places) const;
 
