@@ -73,6 +73,10 @@ bool Dialogue::areOfOtherNames(const std::string& name, const std::vector<Id>& p
 }
 
 bool Dialogue::tellOnlyTold(const std::string& name, Reply& out) {
+  if (places_.isShelved(name)) {
+    out.sentences.push_back(phrases().say("not_on_this_map", {{"name", said(name)}}));
+    return true;
+  }
   const std::vector<Id> told = builder_.find(name);
   if (told.empty()) return false;
   out.sentences.push_back(phrases().say("told_only", {{"name", said(name)}}));
