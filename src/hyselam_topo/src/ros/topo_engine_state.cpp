@@ -74,7 +74,6 @@ void TopoEngineServer::saveChanges() {
     save(params_.state_file);
     changed_ = false;
     input_.file_error.clear();
-    input_.put_aside.clear();
   } catch (const std::exception& e) {
     if (input_.file_error.empty())
       ROS_ERROR_STREAM(who_ << " the state is not saved: " << e.what());

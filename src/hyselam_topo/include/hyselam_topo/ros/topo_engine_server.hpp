@@ -133,7 +133,7 @@ class TopoEngineServer {
     // Of the last input of a topic that was refused; empty: the last one was used.
     std::string map_error, grid_error, text_error;
     std::string file_error;  ///< of the state file
-    std::string put_aside;   ///< why a damaged state was put aside at the start, until the next save
+    std::string put_aside;   ///< why a damaged state was put aside, until people save or load one
     std::string pose_error;
   } input_;
   ros::WallTime started_ = ros::WallTime::now();
