@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 #include <string>
 #include <vector>
@@ -99,7 +100,7 @@ void expectSameNames(const PlaceMan& man, const PlaceMan& before) {
   EXPECT_EQ(now.size(), then.size());
   for (const auto& [name, at] : then) {
     ASSERT_EQ(now.count(name), 1u) << name;
-    EXPECT_LT(hyselam::distanceBetween(now.at(name), at), 0.01) << name;
+    EXPECT_LT(std::hypot(now.at(name).x - at.x, now.at(name).y - at.y), 0.01) << name;
   }
 }
 

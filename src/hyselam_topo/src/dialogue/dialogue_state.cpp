@@ -107,8 +107,8 @@ DialogueState dialogueStateFromText(const std::string& text, const std::string& 
                                          r.at("name").get<std::string>());
     }
     if (version == std::to_string(kOldest)) return state;
-    for (const json& map : j.at("shelf")) {
-      state.places.shelf.push_back(fromXml(map.get<std::string>(), source + ": shelf"));
+    for (const json& shelved : j.at("shelf")) {
+      state.places.shelf.push_back(fromXml(shelved.get<std::string>(), source + ": shelf"));
     }
   } catch (const InputError&) {
     throw;
