@@ -192,8 +192,7 @@ TEST(OlderFileVersions, DescriptionsWithoutCertaintiesAreReadAsSure) {
 }
 
 TEST(OlderFileVersions, DialoguesWithoutAShelfAreRead) {
-  const auto old =
-      hyselam_topo::loadDialogueState(kRoot + "/" + kSamples + "dialogue_1.state");
+  const auto old = hyselam_topo::loadDialogueState(kRoot + "/" + kSamples + "dialogue_1.state");
   EXPECT_EQ(old.places.map.places.size(), 2u);
   EXPECT_TRUE(old.places.shelf.empty());
 }

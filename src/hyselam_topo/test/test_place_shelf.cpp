@@ -1,6 +1,4 @@
 // Names by people outlive maps that do not show their places, and go to no place of another map.
-#include "hyselam_topo/dialogue/place_shelf.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,6 +11,7 @@
 #include "hyselam_sim/generate_plan.hpp"
 #include "hyselam_sim/rasterize.hpp"
 #include "hyselam_topo/dialogue/dialogue_state.hpp"
+#include "hyselam_topo/dialogue/place_shelf.hpp"
 #include "hyselam_topological_map/map_geometry.hpp"
 #include "talk.hpp"
 
@@ -145,8 +144,8 @@ TEST(PlaceShelf, AnotherBuildingGetsNone) {
       if (i == k) {
         EXPECT_EQ(found.size(), generated()[i].places.size()) << i;
       } else {
-        EXPECT_TRUE(found.empty()) << found.size() << " of " << shelved.places.size() << ", " << i
-                                   << " in " << k;
+        EXPECT_TRUE(found.empty())
+            << found.size() << " of " << shelved.places.size() << ", " << i << " in " << k;
         ++tried;
       }
     }
@@ -242,8 +241,7 @@ TEST(PlaceShelf, TheDialogueSaysSo) {
   EXPECT_EQ(talk.dialogue.setMap(ownMap(30.0, 30.0)).text(), "");
   EXPECT_EQ(talk.say("Where is John's office?"),
             "I know John's office, but it is not on this map now.");
-  EXPECT_EQ(talk.say("Go to the kitchen."),
-            "I know the kitchen, but it is not on this map now.");
+  EXPECT_EQ(talk.say("Go to the kitchen."), "I know the kitchen, but it is not on this map now.");
   EXPECT_EQ(talk.dialogue.setMap(two_rooms::map()).text(), "I see 2 places again.");
   EXPECT_EQ(talk.say("Where is John's office?").rfind("John's office is SS", 0), 0u);
   talk.dialogue.useLanguage("pt");

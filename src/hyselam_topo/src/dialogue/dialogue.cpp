@@ -138,9 +138,8 @@ Reply Dialogue::setMap(const AugmentedTopologicalMap& fresh) {
 void Dialogue::tellOutOfSight(const PlaceMan::MapReport& report, Reply& out) const {
   const auto tell = [&](const std::string& phrase, std::size_t count) {
     if (count == 0) return;
-    out.sentences.push_back(count == 1
-                                ? phrases().say(phrase + "_one")
-                                : phrases().say(phrase, {{"count", std::to_string(count)}}));
+    out.sentences.push_back(count == 1 ? phrases().say(phrase + "_one")
+                                       : phrases().say(phrase, {{"count", std::to_string(count)}}));
   };
   tell("seen_again", report.seen_again.size());
   tell("out_of_sight", report.shelved);

@@ -11,8 +11,8 @@ namespace hyselam_topo {
 namespace {
 
 constexpr std::size_t kMostPlaces = 500;
-constexpr double kClear = 0.5;        // shared part of the cells of both
-constexpr double kClearAlone = 0.7;   // ... where no other place bears witness
+constexpr double kClear = 0.75;       // shared part of the cells of both
+constexpr double kClearAlone = 0.85;  // ... where no other place bears witness
 constexpr double kMostFound = 0.6;    // part of the places
 constexpr std::size_t kFewest = 2;    // places
 
@@ -147,12 +147,11 @@ std::map<Id, Id> foundAgain(const ShelvedMap& shelved, const AugmentedTopologica
   const auto all = static_cast<std::size_t>(std::count_if(
       places.begin(), places.end(), [](const Place& p) { return p.kind != PlaceKind::kVirtual; }));
   const double least = all == 1 ? kClearAlone : kClear;
-  const auto clear = static_cast<std::size_t>(
-      std::count_if(best.begin(), best.end(),
-                    [&](const auto& each) {
-                      return each.second.clearness >= least &&
-                             shelved.findPlace(each.first)->kind != PlaceKind::kVirtual;
-                    }));
+  const auto clear =
+      static_cast<std::size_t>(std::count_if(best.begin(), best.end(), [&](const auto& each) {
+        return each.second.clearness >= least &&
+               shelved.findPlace(each.first)->kind != PlaceKind::kVirtual;
+      }));
   const bool most = static_cast<double>(clear) >= kMostFound * static_cast<double>(all);
   if (all == 0 || !most || clear < std::min(kFewest, all)) return {};
   // It is the same map: what is less clear goes on as in any new segmentation.

@@ -34,7 +34,8 @@ void TopoEngineServer::restoreState() {
       input_.file_error = e.what();
       params_.state_file.clear();
     } else {
-      input_.put_aside = std::string("begins without its state, kept as ") + aside + ": " + e.what();
+      input_.put_aside =
+          std::string("begins without its state, kept as ") + aside + ": " + e.what();
     }
   }
 }

@@ -25,7 +25,8 @@ struct DialogueState {
 };
 
 /// A line "hyselam_dialogue VERSION CRC BYTES", then as many bytes of JSON, in which the maps and
-/// the description stand as XML; version 2 if there is a shelf, else 1. Equal states give equal bytes.
+/// the description stand as XML; version 2 if there is a shelf, else 1. Equal states give equal
+/// bytes.
 std::string toText(const DialogueState& state);
 
 /// Throws hyselam::InputError for another format or version, a wrong length or checksum, and for

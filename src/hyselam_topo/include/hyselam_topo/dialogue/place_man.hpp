@@ -47,8 +47,8 @@ class PlaceMan {
 
   /// What a new map has done to the places.
   struct MapReport : CarryOverReport {
-    std::size_t shelved = 0;    ///< so many named places are out of sight now
-    std::vector<Id> seen_again; ///< these have got names from the shelf
+    std::size_t shelved = 0;     ///< so many named places are out of sight now
+    std::vector<Id> seen_again;  ///< these have got names from the shelf
   };
 
   explicit PlaceMan(PlaceNames names);
@@ -62,10 +62,10 @@ class PlaceMan {
 
   /// A new segmentation of the grid map: ids, names, virtual places and walls are preserved, see
   /// carryOver(). map() has the ids of the first map; new places get new ids, not those of `fresh`.
-  /// Names by people whose places are lost go to the shelf, and come back with a map that shows most
-  /// of these places again (place_shelf.hpp); names that were told since go before them. Where most
-  /// of all places are lost, it is rather another map, or only a small one of another frame: then
-  /// names stay only with places that have clearly the same limits.
+  /// Names by people whose places are lost go to the shelf, and come back with a map that shows
+  /// most of these places again (place_shelf.hpp); names that were told since go before them. Where
+  /// most of all places are lost, it is rather another map, or only a small one of another frame:
+  /// then names stay only with places that have clearly the same limits.
   /// @throws as carryOver().
   MapReport setMap(const AugmentedTopologicalMap& fresh);
 

@@ -31,13 +31,13 @@ void shelve(ShelvedMap lost, Shelf* shelf);
 void takeFrom(std::size_t shelved, const std::vector<Id>& places, Shelf* shelf);
 
 /// Old places that lie, in their own frame, where one of the new map is, with nearly its limits
-/// (shared cells / all cells of both >= 0.5). The new map's place by the old one's.
+/// (shared cells / all cells of both >= 0.75). The new map's place by the old one's.
 std::map<Id, Id> clearSuccessors(const AugmentedTopologicalMap& old,
                                  const AugmentedTopologicalMap& fresh);
 
 /// The places of the new map that are those of a shelved one, each by the shelved one's id. Empty
 /// unless it shows clearly that it is of the same building in the same frame: at least 60 % of the
-/// shelved places, and two, have a clear successor; a single one shares 0.7 of its cells.
+/// shelved places, and two, have a clear successor; a single one shares 0.85 of them.
 std::map<Id, Id> foundAgain(const ShelvedMap& shelved, const AugmentedTopologicalMap& fresh);
 
 }  // namespace hyselam_topo
