@@ -260,7 +260,7 @@ void Dialogue::forgetNames(const Utterance& u, Turn& turn) {
     out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
     return;
   }
-  if (shelved && places_.find(said.front().text).empty()) {
+  if (shelved && confirmedPlaces(said.front().text).empty()) {
     out.sentences.push_back(p.say("forgot_name", {{"name", said.front().text}}));
     return;
   }

@@ -33,6 +33,8 @@ std::vector<Id> Dialogue::resolve(const SaidName& name, Reply& out) {
     for (const std::string& other : withTold({name.text})) {
       if (found.empty()) found = places_.find(other);
     }
+    // A guess is no place for a name that people gave to another one.
+    if (places_.isShelved(name.text) && confirmedPlaces(name.text).empty()) found.clear();
     if (found.empty() && tellOnlyTold(name.text, out)) return {};
     if (areOfOtherNames(name.text, found)) {
       out.sentences.push_back(
