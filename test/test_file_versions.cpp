@@ -102,8 +102,10 @@ std::vector<Format> formats() {
   sample("description.xml", 2, 1, mark("version=\"", 2, "\" robot"), [](const std::string& path) {
     EXPECT_EQ(hyselam_topo::loadDescription(path).places.size(), 2u);
   });
-  sample("dialogue.state", 1, 1, mark("hyselam_dialogue ", 1, " "), [](const std::string& path) {
-    EXPECT_EQ(hyselam_topo::loadDialogueState(path).places.map.places.size(), 2u);
+  sample("dialogue.state", 2, 1, mark("hyselam_dialogue ", 2, " "), [](const std::string& path) {
+    const auto state = hyselam_topo::loadDialogueState(path);
+    EXPECT_EQ(state.places.map.places.size(), 2u);
+    EXPECT_EQ(hyselam_topo::wordedPlaces(state.places.shelf), 1u);
   });
   sample("objects.xml", 2, 1, mark("map:1\" version=\"", 2), [](const std::string& path) {
     EXPECT_EQ(hyselam_objects::loadObjectMap(path).objects.size(), 4u);
@@ -187,6 +189,12 @@ TEST(OlderFileVersions, DescriptionsWithoutCertaintiesAreReadAsSure) {
   EXPECT_EQ(old.connections[0].side_certainty, 1.0);
   EXPECT_EQ(hyselam_topo::loadDescription(folder + "description.xml").connections[0].side_certainty,
             0.93);
+}
+
+TEST(OlderFileVersions, DialoguesWithoutAShelfAreRead) {
+  const auto old = hyselam_topo::loadDialogueState(kRoot + "/" + kSamples + "dialogue_1.state");
+  EXPECT_EQ(old.places.map.places.size(), 2u);
+  EXPECT_TRUE(old.places.shelf.empty());
 }
 
 std::string nameOf(const ::testing::TestParamInfo<Format>& info) {

@@ -506,3 +506,16 @@ TEST(DialogueNames, AllGuessesAreConfirmedAtOnce) {
     EXPECT_FALSE(talk.isConfirmed(1) || talk.isConfirmed(2)) << sentence;
   }
 }
+
+TEST(DialogueNames, ANameThatIsTypedWithItsArticleIsSaidWithOne) {
+  Talk talk;
+  const std::string reply = talk.dialogue.name(1, {"the kitchen"}).text();
+  EXPECT_TRUE(has(reply, "is the kitchen")) << reply;
+  EXPECT_FALSE(has(reply, "the the")) << reply;
+  EXPECT_EQ(talk.names(1), std::vector<std::string>{"kitchen"});
+  talk.dialogue.name(1, {"A"});
+  EXPECT_EQ(talk.names(1), std::vector<std::string>{"A"});
+  talk.dialogue.useLanguage("pt");
+  talk.dialogue.name(1, {"a cozinha"});
+  EXPECT_EQ(talk.names(1), std::vector<std::string>{"cozinha"});
+}

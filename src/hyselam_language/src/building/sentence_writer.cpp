@@ -142,6 +142,17 @@ std::string withArticle(const std::string& name, const Grammar& grammar, bool* p
   return key.empty() || !grammar.has(key) ? name : grammar.say(key) + name;
 }
 
+std::string withoutArticle(const std::string& name, const Grammar& grammar) {
+  const auto* type = grammar.compiled().nameType("place");
+  const std::size_t begin = name.find_first_not_of(' ');
+  if (type == nullptr || begin == std::string::npos) return name;
+  const std::size_t space = name.find(' ', begin);
+  const std::size_t rest = name.find_first_not_of(' ', space);
+  if (space == std::string::npos || rest == std::string::npos) return name;
+  const bool article = type->isArticle(hyselam::utf8Fold(name.substr(begin, space - begin)));
+  return article ? name.substr(rest) : name;
+}
+
 std::string SentenceWriter::filled(const std::string& key, const std::vector<SaidValue>& values,
                                    bool* begins_with_name) const {
   std::string sentence = withForms(grammar_.say(key), values);

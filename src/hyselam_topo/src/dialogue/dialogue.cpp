@@ -118,7 +118,7 @@ Reply Dialogue::setMap(const AugmentedTopologicalMap& fresh) {
   const bool first = !places_.hasMap();
   const KnownBefore known = knownNow();
   const std::vector<bool> doors_before = places_.wallsOnDoors();
-  const CarryOverReport report = places_.setMap(fresh);
+  const PlaceMan::MapReport report = places_.setMap(fresh);
   if (places_.wallsOnDoors() != doors_before) {
     // What stood in a door that is no longer found is drawn as a wall again.
     out.actions.push_back({DialogueAction::Kind::kWalls, {}, 0.0});
@@ -130,8 +130,19 @@ Reply Dialogue::setMap(const AugmentedTopologicalMap& fresh) {
     talk_.entered = true;
   }
   if (!builder_.building().places.empty()) matchDescription(out, first);
+  tellOutOfSight(report, out);
   out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
   return out;
+}
+
+void Dialogue::tellOutOfSight(const PlaceMan::MapReport& report, Reply& out) const {
+  const auto tell = [&](const std::string& phrase, std::size_t count) {
+    if (count == 0) return;
+    out.sentences.push_back(count == 1 ? phrases().say(phrase + "_one")
+                                       : phrases().say(phrase, {{"count", std::to_string(count)}}));
+  };
+  tell("seen_again", report.seen_again.size());
+  tell("out_of_sight", report.shelved);
 }
 
 void Dialogue::forgetLost(const std::vector<Id>& lost, const KnownBefore& known) {

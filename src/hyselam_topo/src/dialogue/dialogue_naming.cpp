@@ -3,6 +3,7 @@
 
 #include "dialogue_turn.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_language/building/article.hpp"
 #include "hyselam_topo/dialogue/dialogue.hpp"
 
 namespace hyselam_topo {
@@ -104,7 +105,11 @@ Reply Dialogue::name(Id place, const std::vector<std::string>& names) {
     throw hyselam::InputError("places", "id " + std::to_string(place), "there is no such place");
   }
   Reply out = reply();
-  confirmNames(place, names, out, true);
+  std::vector<std::string> bare;  // the robot says them with their article
+  for (const std::string& name : names) {
+    bare.push_back(knowsLanguage(language_) ? withoutArticle(name, grammar()) : name);
+  }
+  confirmNames(place, bare, out, true);
   dropStaleQuestion();
   return out;
 }
@@ -244,14 +249,19 @@ void Dialogue::forgetNames(const Utterance& u, Turn& turn) {
   const std::vector<SaidName> said = u.names("place");
   const bool by_name =
       !said.empty() && said.front().reference.empty() && !isCode(said.front().text);
+  const bool shelved = by_name && places_.forgetShelved(said.front().text);
   const bool told = by_name && !builder_.find(said.front().text).empty();
   if (told && places_.find(said.front().text).empty()) {  // known from descriptions only
-    const bool gone = builder_.forgetName(said.front().text);
+    const bool gone = builder_.forgetName(said.front().text) || shelved;
     matchDescription(out, false);
     const std::string& name = said.front().text;
     out.sentences.push_back(gone ? p.say("forgot_name", {{"name", name}})
                                  : p.say("unknown_place", {{"name", name}}));
     out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
+    return;
+  }
+  if (shelved && confirmedPlaces(said.front().text).empty()) {
+    out.sentences.push_back(p.say("forgot_name", {{"name", said.front().text}}));
     return;
   }
   const std::vector<Id> found = resolve(u, "place", out);

@@ -33,6 +33,8 @@ std::vector<Id> Dialogue::resolve(const SaidName& name, Reply& out) {
     for (const std::string& other : withTold({name.text})) {
       if (found.empty()) found = places_.find(other);
     }
+    // A guess is no place for a name that people gave to another one.
+    if (places_.isShelved(name.text) && confirmedPlaces(name.text).empty()) found.clear();
     if (found.empty() && tellOnlyTold(name.text, out)) return {};
     if (areOfOtherNames(name.text, found)) {
       out.sentences.push_back(
@@ -73,6 +75,10 @@ bool Dialogue::areOfOtherNames(const std::string& name, const std::vector<Id>& p
 }
 
 bool Dialogue::tellOnlyTold(const std::string& name, Reply& out) {
+  if (places_.isShelved(name)) {
+    out.sentences.push_back(phrases().say("not_on_this_map", {{"name", said(name)}}));
+    return true;
+  }
   const std::vector<Id> told = builder_.find(name);
   if (told.empty()) return false;
   out.sentences.push_back(phrases().say("told_only", {{"name", said(name)}}));

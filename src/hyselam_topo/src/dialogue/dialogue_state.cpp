@@ -19,7 +19,8 @@ using hyselam::InputError;
 using nlohmann::json;
 
 constexpr char kFormat[] = "hyselam_dialogue";
-constexpr int kVersion = 1;
+constexpr int kOldest = 1;
+constexpr int kNewest = 2;  // with a shelf
 constexpr std::size_t kMaxBytes = std::size_t{1} << 30;
 
 double numberAt(const json& j, const char* key) {
@@ -52,9 +53,11 @@ std::string toText(const DialogueState& state) {
   for (const auto& [place, name] : state.places.rejected) {
     j["rejected"].push_back({{"place", place}, {"name", name}});
   }
+  for (const ShelvedMap& map : state.places.shelf) j["shelf"].push_back(toXml(map, "shelf"));
+  const int version = state.places.shelf.empty() ? kOldest : kNewest;
   const std::string body = j.dump(1) + "\n";
   char head[80];
-  std::snprintf(head, sizeof head, "%s %d %s %zu\n", kFormat, kVersion,
+  std::snprintf(head, sizeof head, "%s %d %s %zu\n", kFormat, version,
                 hyselam::crc32Text(body).c_str(), body.size());
   return head + body;
 }
@@ -66,8 +69,8 @@ DialogueState dialogueStateFromText(const std::string& text, const std::string& 
   std::size_t size = 0;
   head >> format >> version >> std::hex >> crc >> std::dec >> size;
   if (format != kFormat) throw InputError(source, "line 1", "this is no state of a dialogue");
-  if (version != std::to_string(kVersion)) {
-    throw InputError(source, "line 1", hyselam::versionRefusal(version, {kVersion, kVersion}));
+  if (version != std::to_string(kOldest) && version != std::to_string(kNewest)) {
+    throw InputError(source, "line 1", hyselam::versionRefusal(version, {kOldest, kNewest}));
   }
   const std::size_t begin = text.find('\n') + 1;
   if (head.fail() || text.find('\n') == std::string::npos || text.size() - begin != size) {
@@ -102,6 +105,10 @@ DialogueState dialogueStateFromText(const std::string& text, const std::string& 
     for (const json& r : j.at("rejected")) {
       state.places.rejected.emplace_back(hyselam::integerOf<Id>(r.at("place")),
                                          r.at("name").get<std::string>());
+    }
+    if (version == std::to_string(kOldest)) return state;
+    for (const json& shelved : j.at("shelf")) {
+      state.places.shelf.push_back(fromXml(shelved.get<std::string>(), source + ": shelf"));
     }
   } catch (const InputError&) {
     throw;

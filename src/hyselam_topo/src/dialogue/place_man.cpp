@@ -84,6 +84,7 @@ PlaceMan::PlaceMan(PlaceNames names) : names_(std::move(names)) {}
 void PlaceMan::restore(State state) {
   if (!state.map.places.empty()) checkMap(state.map, "kept map");
   for (const DescribedWall& wall : state.walls) checkWall(wall);
+  for (const ShelvedMap& map : state.shelf) checkMap(map, "shelved map");
   state_ = std::move(state);
 }
 
@@ -95,17 +96,21 @@ Place& PlaceMan::at(Id id) {
   return *place;
 }
 
-CarryOverReport PlaceMan::setMap(const AugmentedTopologicalMap& fresh) {
+PlaceMan::MapReport PlaceMan::setMap(const AugmentedTopologicalMap& fresh) {
   checkMap(fresh, "new map");
-  CarryOverReport report;
+  MapReport report;
+  const AugmentedTopologicalMap before = state_.map;
+  std::vector<Id> unnamed;  // of before, whose words the new map does not have
   if (!hasMap() || state_.map.frame_id != fresh.frame_id || !state_.map.grid || !fresh.grid) {
     AugmentedTopologicalMap map = fresh;
     for (const Place& place : state_.map.places) report.lost.push_back(place.id);
     for (const Place& place : map.places) report.created.push_back(place.id);
     state_.map = std::move(map);
   } else {
-    state_.map = carryOver(state_.map, fresh, {}, report);
+    state_.map = carryOver(before, fresh, {}, report);
+    unnamed = takeUnclear(before, report);
   }
+  unnamed.insert(unnamed.end(), report.lost.begin(), report.lost.end());
   drawVirtualPlaces();
   putWalls();
   auto& rejected = state_.rejected;
@@ -113,7 +118,112 @@ CarryOverReport PlaceMan::setMap(const AugmentedTopologicalMap& fresh) {
       std::remove_if(rejected.begin(), rejected.end(),
                      [&](const auto& r) { return state_.map.findPlace(r.first) == nullptr; }),
       rejected.end());
+  report.seen_again = takeFromShelf();
+  ShelvedMap lost = shelvedFrom(before, unnamed);
+  report.shelved = lost.places.size();
+  shelve(std::move(lost), &state_.shelf);
   return report;
+}
+
+std::vector<Id> PlaceMan::takeUnclear(const AugmentedTopologicalMap& before,
+                                      const CarryOverReport& report) {
+  constexpr std::size_t kFewest = 4;  // with fewer a single one may be most of them
+  const auto segmented = static_cast<std::size_t>(
+      std::count_if(before.places.begin(), before.places.end(),
+                    [](const Place& p) { return p.kind != PlaceKind::kVirtual; }));
+  std::vector<Id> unclear;
+  if (segmented < kFewest || 2 * report.lost.size() <= segmented) return unclear;
+  const std::map<Id, Id> clear = clearSuccessors(before, state_.map);
+  std::map<Id, Id> successor(report.merged.begin(), report.merged.end());
+  for (const Id id : report.kept) successor[id] = id;
+  std::map<Id, std::vector<PlaceTerm>> words;
+  for (const auto& [id, place] : successor) {
+    const Place& old = *before.findPlace(id);
+    if (old.kind == PlaceKind::kVirtual) continue;
+    auto& left = words[place];
+    if (clear.count(id) == 0) {
+      unclear.push_back(id);
+    } else {
+      left.insert(left.end(), old.words.begin(), old.words.end());
+    }
+  }
+  for (auto& [place, left] : words) at(place).words = std::move(left);
+  return unclear;
+}
+
+// ---- The shelf ----
+
+std::vector<Id> PlaceMan::takeFromShelf() {
+  std::vector<std::string> told;  // since
+  for (const Place& place : state_.map.places) {
+    for (std::string& name : confirmedOf(place.words)) told.push_back(std::move(name));
+  }
+  const AugmentedTopologicalMap map = state_.map;
+  std::vector<Id> seen;
+  for (std::size_t i = state_.shelf.size(); i-- > 0;) {  // what was shelved last goes first
+    const ShelvedMap shelved = state_.shelf[i];
+    std::vector<Id> found;
+    for (const auto& [id, place] : foundAgain(shelved, map)) {
+      const Place& known = *shelved.findPlace(id);
+      const bool is_virtual = known.kind == PlaceKind::kVirtual;
+      // Its name waits until its middle is on the map.
+      if (is_virtual && !(known.centre && placeAt(map, {known.centre->x, known.centre->y})))
+        continue;
+      found.push_back(id);
+      const bool renamed = !is_virtual && hasConfirmed(*map.findPlace(place));
+      if (known.words.empty() || renamed) continue;
+      nameFromShelf(known, place, told);
+      if (hasConfirmed(at(place))) seen.push_back(place);
+    }
+    takeFrom(i, found, &state_.shelf);
+  }
+  std::sort(seen.begin(), seen.end());
+  seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
+  return seen;
+}
+
+void PlaceMan::nameFromShelf(const Place& shelved, Id place, const std::vector<std::string>& told) {
+  std::vector<std::string> names;
+  for (const std::string& name : confirmedOf(shelved.words)) {
+    const bool elsewhere = std::any_of(told.begin(), told.end(), [&](const std::string& each) {
+      return sameSpelling(each, name);
+    });
+    if (!elsewhere && !isRejected(place, name)) names.push_back(name);
+  }
+  if (names.empty()) return;
+  if (shelved.kind == PlaceKind::kVirtual) {
+    const hyselam::Point2 centre{shelved.centre->x, shelved.centre->y};
+    addVirtualPlace(centre, std::min(kMaxRadius, std::sqrt(shelved.area / hyselam::kPi)), names);
+    return;
+  }
+  auto& words = at(place).words;
+  words.erase(std::remove_if(words.begin(), words.end(),
+                             [](const PlaceTerm& word) { return !word.confirmed; }),
+              words.end());
+  for (const std::string& name : names) {
+    const bool known = std::any_of(words.begin(), words.end(),
+                                   [&](const PlaceTerm& word) { return word.text == name; });
+    if (!known) words.push_back({name, true});
+  }
+}
+
+bool PlaceMan::isShelved(const std::string& name) const {
+  for (const ShelvedMap& map : state_.shelf) {
+    for (const Place& place : map.places) {
+      const auto names = confirmedOf(place.words);
+      if (!names_.find(name, {names}).empty()) return true;
+    }
+  }
+  return false;
+}
+
+bool PlaceMan::forgetShelved(const std::string& name) {
+  const std::size_t before = wordedPlaces(state_.shelf);
+  for (std::size_t i = state_.shelf.size(); i-- > 0;) {
+    for (Place& place : state_.shelf[i].places) dropWord(&place, name, false);
+    takeFrom(i, {}, &state_.shelf);
+  }
+  return wordedPlaces(state_.shelf) != before;
 }
 
 // ---- Names ----
@@ -247,6 +357,7 @@ std::vector<Id> PlaceMan::forgetName(const std::string& name) {
 void PlaceMan::forgetAllNames() {
   for (Place& place : state_.map.places) place.words.clear();
   state_.rejected.clear();
+  state_.shelf.clear();
 }
 
 std::vector<Id> PlaceMan::rename(Id id, const std::vector<std::string>& names) {

@@ -60,6 +60,8 @@ void TopoEngineServer::act(const Reply& reply) {
     publishQuestion();
   }
   publishOpen();
+  // An answer promises that what was told is kept.
+  if (!reply.sentences.empty()) saveChanges();
   for (const std::string& sentence : reply.sentences) say(sentence);
 }
 

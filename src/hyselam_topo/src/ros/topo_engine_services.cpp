@@ -170,6 +170,7 @@ bool TopoEngineServer::onSave(hyselam_msgs::StatePath::Request& request,
     const std::string& path = request.path.empty() ? params_.state_file : request.path;
     if (path.empty()) throw InputError("save_dialogue", "path", "there is none, nor a state_file");
     save(path);
+    input_.put_aside.clear();
     response.success = 1;
     response.message = "the state is written to " + path;
   } catch (const std::exception& e) {
@@ -185,6 +186,7 @@ bool TopoEngineServer::onLoad(hyselam_msgs::StatePath::Request& request,
     const std::string& path = request.path.empty() ? params_.state_file : request.path;
     if (path.empty()) throw InputError("load_dialogue", "path", "there is none, nor a state_file");
     load(path);
+    input_.put_aside.clear();
     changed_ = true;
     response.success = 1;
     response.message = std::to_string(dialogue_.map().places.size()) + " places read from " + path;

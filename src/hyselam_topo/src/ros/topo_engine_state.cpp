@@ -25,13 +25,18 @@ void TopoEngineServer::restoreState() {
     load(params_.state_file);
   } catch (const std::exception& e) {
     // Neither lost nor in the way: the robot begins afresh.
-    input_.file_error = e.what();
     const std::string aside = params_.state_file + ".damaged";
     std::error_code failed;
     std::filesystem::rename(params_.state_file, aside, failed);
     ROS_ERROR_STREAM(who_ << " begins without its state: " << e.what()
                           << (failed ? "" : "; the file is kept as " + aside));
-    if (failed) params_.state_file.clear();
+    if (failed) {
+      input_.file_error = e.what();
+      params_.state_file.clear();
+    } else {
+      input_.put_aside =
+          std::string("begins without its state, kept as ") + aside + ": " + e.what();
+    }
   }
 }
 
@@ -60,8 +65,11 @@ void TopoEngineServer::save(const std::string& path) {
 }
 
 void TopoEngineServer::autosave() {
+  if ((ros::WallTime::now() - saved_).toSec() >= kSavePeriod) saveChanges();
+}
+
+void TopoEngineServer::saveChanges() {
   if (!changed_ || params_.state_file.empty()) return;
-  if ((ros::WallTime::now() - saved_).toSec() < kSavePeriod) return;
   saved_ = ros::WallTime::now();
   try {
     save(params_.state_file);
@@ -84,6 +92,7 @@ void TopoEngineServer::report(diagnostic_msgs::DiagnosticStatus& status) {
        {&input_.map_error, &input_.grid_error, &input_.text_error, &input_.file_error}) {
     if (!error->empty()) addRemark(status, DiagnosticStatus::ERROR, *error);
   }
+  if (!input_.put_aside.empty()) addRemark(status, DiagnosticStatus::WARN, input_.put_aside);
   const bool long_ago = (ros::WallTime::now() - started_).toSec() > kPatience;
   std::size_t confirmed = 0, guessed = 0;
   for (const Place& place : dialogue_.map().places) {

@@ -12,4 +12,8 @@ namespace hyselam_topo {
 /// Mozart", "Ana's office"), or of another language. `plural`: whether it is one of several.
 std::string withArticle(const std::string& name, const Grammar& grammar, bool* plural = nullptr);
 
+/// Without the article of the grammar's language that stands before it: "kitchen" of "the kitchen".
+/// A word alone is kept: "A".
+std::string withoutArticle(const std::string& name, const Grammar& grammar);
+
 }  // namespace hyselam_topo

@@ -139,6 +139,8 @@ class Dialogue {
   void askAboutPlace(Id place, AskPolicy policy, Reply& reply);
   /// What was asked or told right before of places that a new map does not have is over.
   void forgetLost(const std::vector<Id>& lost, const KnownBefore& known);
+  /// How many named places are not to be seen any more, and how many again.
+  void tellOutOfSight(const PlaceMan::MapReport& report, Reply& out) const;
 
   // ---- One text, utterance by utterance (dialogue_hear.cpp) ----
   /// As what may answer the open question, if need be; nothing is changed.
@@ -218,8 +220,8 @@ class Dialogue {
   /// Whether a name of another language may mean several names: "casa de banho" the toilet and the
   /// bathroom.
   bool areOfOtherNames(const std::string& name, const std::vector<Id>& places) const;
-  /// What was told of a place that is not on the map, and how to tell where it is; false if nothing
-  /// was told.
+  /// That a place is not on this map now; of one that was never found, what was told of it, and how
+  /// to tell where it is. False if nothing was told.
   bool tellOnlyTold(const std::string& name, Reply& reply);
   /// The places that a name, "here" or "it" refers to; adds the reason to `reply` if none.
   std::vector<Id> resolve(const SaidName& name, Reply& reply);

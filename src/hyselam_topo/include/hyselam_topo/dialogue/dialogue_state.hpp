@@ -24,8 +24,9 @@ struct DialogueState {
   Id told_at = 0;
 };
 
-/// A line "hyselam_dialogue 1 CRC BYTES", then as many bytes of JSON, in which the map and the
-/// description stand as XML. Equal states give equal bytes.
+/// A line "hyselam_dialogue VERSION CRC BYTES", then as many bytes of JSON, in which the maps and
+/// the description stand as XML; version 2 if there is a shelf, else 1. Equal states give equal
+/// bytes.
 std::string toText(const DialogueState& state);
 
 /// Throws hyselam::InputError for another format or version, a wrong length or checksum, and for

@@ -11,6 +11,7 @@
 
 #include "hyselam_language/building/place_names.hpp"
 #include "hyselam_topo/dialogue/described_wall.hpp"
+#include "hyselam_topo/dialogue/place_shelf.hpp"
 #include "hyselam_topological_map/carry_over.hpp"
 #include "hyselam_topological_map/topological_map.hpp"
 
@@ -41,6 +42,13 @@ class PlaceMan {
     std::vector<DescribedWall> walls;
     /// (place, name) pairs that a person has denied.
     std::vector<std::pair<Id, std::string>> rejected;
+    Shelf shelf;  ///< names by people whose places the map does not show
+  };
+
+  /// What a new map has done to the places.
+  struct MapReport : CarryOverReport {
+    std::size_t shelved = 0;     ///< so many named places are out of sight now
+    std::vector<Id> seen_again;  ///< these have got names from the shelf
   };
 
   explicit PlaceMan(PlaceNames names);
@@ -54,8 +62,12 @@ class PlaceMan {
 
   /// A new segmentation of the grid map: ids, names, virtual places and walls are preserved, see
   /// carryOver(). map() has the ids of the first map; new places get new ids, not those of `fresh`.
+  /// Names by people whose places are lost go to the shelf, and come back with a map that shows
+  /// most of these places again (place_shelf.hpp); names that were told since go before them. Where
+  /// most of all places are lost, it is rather another map, or only a small one of another frame:
+  /// then names stay only with places that have clearly the same limits.
   /// @throws as carryOver().
-  CarryOverReport setMap(const AugmentedTopologicalMap& fresh);
+  MapReport setMap(const AugmentedTopologicalMap& fresh);
 
   // ---- Names. Places that are not in the map throw hyselam::InputError. ----
   /// A person has stated the names: they are confirmed for this place, its guesses are removed, and
@@ -81,7 +93,11 @@ class PlaceMan {
   bool forget(Id place);
   /// Removes a name from all places. Returns the places that had it.
   std::vector<Id> forgetName(const std::string& name);
-  /// Removes all names of all places, and the rejected ones.
+  /// Whether a person gave this name to a place that is on the shelf.
+  bool isShelved(const std::string& name) const;
+  /// Removes a name from the shelf. False if it was not there.
+  bool forgetShelved(const std::string& name);
+  /// Removes all names of all places, those on the shelf, and the rejected ones.
   void forgetAllNames();
   /// confirm(), and all other names of the place are gone. Throws as it, without effect.
   std::vector<Id> rename(Id place, const std::vector<std::string>& names);
@@ -121,6 +137,10 @@ class PlaceMan {
  private:
   Place& at(Id place);
   void drawVirtualPlaces();
+  /// Those whose names do not go on in the new map although carryOver() has found a successor.
+  std::vector<Id> takeUnclear(const AugmentedTopologicalMap& before, const CarryOverReport& report);
+  std::vector<Id> takeFromShelf();
+  void nameFromShelf(const Place& shelved, Id place, const std::vector<std::string>& told);
   void putWalls();
   /// sameName() without the kinds of places in two languages: what takes a name from a place.
   bool sameSpelling(const std::string& a, const std::string& b) const;

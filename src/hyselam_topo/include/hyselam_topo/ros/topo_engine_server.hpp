@@ -82,7 +82,10 @@ class TopoEngineServer {
   void restoreState();
   void load(const std::string& path);
   void save(const std::string& path);
+  /// At most every two seconds.
   void autosave();
+  /// Writes the state if it has changed; an error is told, and tried again.
+  void saveChanges();
 
   /// A point of a request in the frame of the map; the robot's where none is given. Throws
   /// hyselam::InputError.
@@ -130,6 +133,7 @@ class TopoEngineServer {
     // Of the last input of a topic that was refused; empty: the last one was used.
     std::string map_error, grid_error, text_error;
     std::string file_error;  ///< of the state file
+    std::string put_aside;   ///< why a damaged state was put aside, until people save or load one
     std::string pose_error;
   } input_;
   ros::WallTime started_ = ros::WallTime::now();
