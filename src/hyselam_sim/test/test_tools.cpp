@@ -58,7 +58,7 @@ TEST_F(Tools, EqualSeedsGiveEqualBytesAndOtherSeedsOthers) {
 TEST_F(Tools, DrawsPilesBySeed) {
   for (const char* name : {"a", "b"}) {
     ASSERT_EQ(run("pile", "--seed 3 --things 3 --with mug --out " + file(name).string() +
-                                    " --json " + file("j.json").string()),
+                              " --json " + file("j.json").string()),
               0)
         << content(file("stderr"));
   }

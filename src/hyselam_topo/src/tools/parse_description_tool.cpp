@@ -215,8 +215,7 @@ json runTour(const Options& o) {
   const hyselam_topo::ToldTour tour = hyselam_topo::TourReader::shipped(grammar).read(input.text);
   if (tour.empty())
     throw hyselam::InputError(input.name, "", "names no room: this is no tour of a building");
-  const DescribedBuilding building =
-      hyselam_topo::describeTour(tour, grammar.say("tour_corridor"));
+  const DescribedBuilding building = hyselam_topo::describeTour(tour, grammar.say("tour_corridor"));
   hyselam_topo::saveXml(o.out, building);
   std::cout << parsed.language << ": a tour past " << building.places.size() - 1 << " rooms -> "
             << o.out << '\n';
