@@ -4,6 +4,7 @@
 #include <malloc.h>
 
 #include <chrono>
+#include <stdexcept>
 #include <utility>
 
 #include "ngram_slam/ros/slam_server.hpp"
@@ -15,8 +16,9 @@ using Lock = std::unique_lock<std::mutex>;
 
 namespace {
 
-constexpr double kCheckPeriod = 0.1;   // [s] of wall time between looks for a scan
-constexpr std::size_t kFewScans = 10;  // added while others wait
+constexpr double kCheckPeriod = 0.1;      // [s] of wall time between looks for a scan
+constexpr std::size_t kFewScans = 10;     // added while others wait
+constexpr std::size_t kMostScans = 5000;  // of a machine that is too slow to add them all
 
 }  // namespace
 
@@ -38,7 +40,7 @@ std::unique_ptr<SlamServer::Mapping> SlamServer::nextSession(SlamState state) co
 }
 
 /// Adds what came since the copy and puts the next session in the place of this one. False: the
-/// copy is void.
+/// copy is void. @throws std::runtime_error if they are too many.
 bool SlamServer::goOnWith(std::unique_ptr<Mapping>* next) {
   Mapping& n = **next;
   std::vector<LaterScan> scans;
@@ -61,6 +63,10 @@ bool SlamServer::goOnWith(std::unique_ptr<Mapping>* next) {
       });
       if (ending_ || !later_scans_) return false;
       std::swap(scans, *later_scans_);
+      if (scans.size() > kMostScans) {
+        throw std::runtime_error(
+            "its end takes too long: the machine is too slow, or the map too large");
+      }
       if (n.localized && scans.size() <= kFewScans) {
         addScans(true);
         n.saved_scans = mapping_->saved_scans;
