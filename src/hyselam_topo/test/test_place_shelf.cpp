@@ -254,7 +254,7 @@ TEST(PlaceShelf, ANameOnItIsForgottenByName) {
   Talk talk;
   talk.say("This is John's office.");
   talk.dialogue.setMap(ownMap(30.0, 30.0));
-  talk.say("Forget the name John's office.");
+  talk.say("Forget John's office.");
   EXPECT_EQ(talk.dialogue.setMap(two_rooms::map()).text(), "");
   EXPECT_EQ(talk.say("Where is John's office?"), "I do not know the place John's office.");
 }

@@ -110,7 +110,10 @@ void Dialogue::addStatement(const Utterance& u, Turn& turn) {
   turn.asks_speaker = turn.asks_speaker || (builder_.speaker().empty() && saysMy(u));
   if (!u.word("side").empty()) turn.sides = true;
   if (u.intent == "forget_place") {
-    for (const std::string& name : textsOf(place)) places_.forgetName(name);
+    for (const std::string& name : textsOf(place)) {
+      places_.forgetName(name);
+      places_.forgetShelved(name);
+    }
   }
 }
 

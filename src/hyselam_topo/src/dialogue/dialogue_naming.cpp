@@ -261,7 +261,11 @@ void Dialogue::forgetNames(const Utterance& u, Turn& turn) {
     return;
   }
   if (shelved && confirmedPlaces(said.front().text).empty()) {
+    // What was told of it would be guessed on this map otherwise.
+    if (told) builder_.forgetName(said.front().text);
+    matchDescription(out, false);
     out.sentences.push_back(p.say("forgot_name", {{"name", said.front().text}}));
+    out.actions.push_back({DialogueAction::Kind::kMap, {}, 0.0});
     return;
   }
   const std::vector<Id> found = resolve(u, "place", out);
