@@ -489,8 +489,9 @@ TEST(Dialogue, ContinuesAfterARestart) {
   EXPECT_EQ(messageOf(good.substr(0, good.size() - 9)), "f: it is not complete");
   EXPECT_EQ(messageOf("<xml/>"), "f: line 1: this is no state of a dialogue");
   EXPECT_EQ(messageOf(""), "f: line 1: this is no state of a dialogue");
-  EXPECT_EQ(messageOf("hyselam_dialogue 3 0 0\n"),
-            "f: line 1: has version 3, this program reads 1 to 2; it was written by a newer HySeLAM");
+  EXPECT_EQ(
+      messageOf("hyselam_dialogue 3 0 0\n"),
+      "f: line 1: has version 3, this program reads 1 to 2; it was written by a newer HySeLAM");
 }
 
 TEST(Dialogue, AnswersInTheLanguageOfThePerson) {
