@@ -34,7 +34,7 @@ TourContext::TourContext(const TourWords& words, const HeardText& text,
   for (const Mention& room : rooms)
     std::fill(named_.begin() + static_cast<std::ptrdiff_t>(room.begin),
               named_.begin() + static_cast<std::ptrdiff_t>(room.end), true);
-  findCues(words);
+  findCues();
   for (std::size_t m = 0; m < rooms.size(); ++m)
     is_new_.push_back(std::find(room_of.begin(), room_of.begin() + static_cast<std::ptrdiff_t>(m),
                                 room_of[m]) == room_of.begin() + static_cast<std::ptrdiff_t>(m));
@@ -131,7 +131,8 @@ void TourContext::rule() {
   }
 }
 
-void TourContext::findCues(const TourWords& words) {
+void TourContext::findCues() {
+  const TourWords& words = words_;
   std::optional<bool> last;
   for (std::size_t at = 0; at < text_.tokens().size(); ++at) {
     if (isNamed(at)) continue;

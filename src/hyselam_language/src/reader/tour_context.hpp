@@ -54,7 +54,7 @@ class TourContext {
     std::string how = "none";  ///< "own", "known" (of the same room before), "across", "carried"
     std::size_t steps = 0;     ///< mentions since one with a word of its own
   };
-  void findCues(const TourWords& words);
+  void findCues();
   /// Numbers of the cues that belong to each mention; kNone without.
   std::vector<std::size_t> ownCues() const;
   void rule();

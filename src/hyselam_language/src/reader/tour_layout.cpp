@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
+
+#include "annealing.hpp"
 
 namespace hyselam_topo {
 namespace language {
@@ -59,7 +60,7 @@ struct Shares {
 class Sampler {
  public:
   Sampler(const TourEvidence& evidence, const TourLayoutParams& params)
-      : evidence_(evidence), params_(params), random_(params.seed), shares_(evidence.rooms) {
+      : evidence_(evidence), params_(params), dice_(params.seed), shares_(evidence.rooms) {
     // Where the doors are along the corridor nobody knows: facing each other or not is the same.
     for (std::size_t pair = 0; pair < evidence.apart.size(); ++pair)
       apart_.push_back(std::log(std::exp(evidence.facing[pair]) + std::exp(evidence.apart[pair])));
@@ -71,10 +72,6 @@ class Sampler {
   }
 
  private:
-  /// The same numbers on every machine.
-  double real() { return static_cast<double>(random_() >> 11) * 0x1.0p-53; }
-  std::size_t below(std::size_t count) { return static_cast<std::size_t>(random_() % count); }
-
   void sample() {
     const std::size_t n = evidence_.rooms;
     Layout now;
@@ -84,37 +81,33 @@ class Sampler {
     }
     double likely = logLikelihood(evidence_, apart_, now);
     keep(now, likely);
-    const std::size_t steps = params_.sweeps * n, cooling = steps / 3;
-    for (std::size_t step = 0; step < steps; ++step) {
-      const double share =
-          static_cast<double>(step) / static_cast<double>(std::max<std::size_t>(cooling, 1));
-      const double temperature =
-          step < cooling ? params_.first_temperature * (1.0 - share) + share : 1.0;
+    const Cooling cooling{params_.sweeps * n, params_.first_temperature};
+    for (std::size_t step = 0; step < cooling.steps; ++step) {
       Layout next = now;
       change(&next);
       const double next_likely = logLikelihood(evidence_, apart_, next);
-      if (next_likely >= likely || real() < std::exp((next_likely - likely) / temperature)) {
+      if (dice_.accepts(next_likely - likely, cooling.temperature(step))) {
         now = std::move(next);
         likely = next_likely;
         keep(now, likely);
       }
-      if (step >= cooling && step % n == 0) shares_.add(now);
+      if (cooling.isOver(step) && step % n == 0) shares_.add(now);
     }
   }
 
   /// One room goes elsewhere, or changes sides, or both; or all of a row behind one do.
   void change(Layout* layout) {
-    const double kind = real();
-    const std::size_t room = below(evidence_.rooms);
+    const double kind = dice_.real();
+    const std::size_t room = dice_.below(evidence_.rooms);
     if (kind < 0.7) {
       auto& order = layout->order;
       order.erase(std::find(order.begin(), order.end(), room));
-      order.insert(order.begin() + static_cast<std::ptrdiff_t>(below(evidence_.rooms)), room);
+      order.insert(order.begin() + static_cast<std::ptrdiff_t>(dice_.below(evidence_.rooms)), room);
     }
     if (kind < 0.2 || (kind >= 0.7 && kind < 0.9)) layout->is_left[room] ^= 1;
     if (kind >= 0.9) {
       // What was told in a row goes together.
-      const std::size_t end = std::min(evidence_.rooms, room + 1 + below(evidence_.rooms));
+      const std::size_t end = std::min(evidence_.rooms, room + 1 + dice_.below(evidence_.rooms));
       for (std::size_t k = room; k < end; ++k) layout->is_left[k] ^= 1;
     }
   }
@@ -147,7 +140,7 @@ class Sampler {
   const TourEvidence& evidence_;
   std::vector<double> apart_;  ///< on different sides
   const TourLayoutParams& params_;
-  std::mt19937_64 random_;
+  Dice dice_;
   Shares shares_;
   Layout best_;
   double best_likely_ = 0.0;

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <string>
 
+#include "annealing.hpp"
 #include "hyselam_common/errors.hpp"
 
 namespace hyselam_topo {
@@ -127,7 +127,7 @@ class Matcher {
         slots_(slots.size()),
         params_(params),
         scores_(evidence, slots, params),
-        random_(params.seed),
+        dice_(params.seed),
         allowed_(names_ * slots_, 1),
         fixed_(names_, kNone) {
     restrict(constraints);
@@ -153,9 +153,6 @@ class Matcher {
   }
 
  private:
-  double real() { return static_cast<double>(random_() >> 11) * 0x1.0p-53; }
-  std::size_t below(std::size_t count) { return static_cast<std::size_t>(random_() % count); }
-
   void restrict(const TourConstraints& constraints) {
     const auto fail = [](std::size_t slot, const std::string& reason) {
       throw hyselam::InputError("constraints", "slot " + std::to_string(slot), reason);
@@ -185,21 +182,17 @@ class Matcher {
     std::vector<std::size_t> slot_of = fixed_;
     double score = scores_.ofAll(slot_of);
     keep(slot_of, score);
-    const std::size_t steps = params_.sweeps * names_, cooling = steps / 3;
-    for (std::size_t step = 0; step < steps; ++step) {
-      const double share =
-          static_cast<double>(step) / static_cast<double>(std::max<std::size_t>(cooling, 1));
-      const double temperature =
-          step < cooling ? params_.first_temperature * (1.0 - share) + share : 1.0;
+    const language::Cooling cooling{params_.sweeps * names_, params_.first_temperature};
+    for (std::size_t step = 0; step < cooling.steps; ++step) {
       std::vector<std::size_t> next = slot_of;
-      if (real() < 0.85 ? !moveOne(&next) : !rotate(&next)) continue;
+      if (dice_.real() < 0.85 ? !moveOne(&next) : !rotate(&next)) continue;
       const double changed = difference(slot_of, next);
-      if (changed >= 0.0 || real() < std::exp(changed / temperature)) {
+      if (dice_.accepts(changed, cooling.temperature(step))) {
         slot_of = std::move(next);
         score += changed;
         keep(slot_of, score);
       }
-      if (step >= cooling && step % names_ == 0) {
+      if (cooling.isOver(step) && step % names_ == 0) {
         ++*count;
         for (std::size_t name = 0; name < names_; ++name)
           if (slot_of[name] != kNone) ++(*seen)[slot_of[name] * names_ + name];
@@ -209,7 +202,7 @@ class Matcher {
 
   /// A name goes to another slot or to none; who is there gets its slot.
   bool moveOne(std::vector<std::size_t>* slot_of) {
-    const std::size_t name = below(names_), to = below(slots_ + 1);
+    const std::size_t name = dice_.below(names_), to = dice_.below(slots_ + 1);
     const std::size_t slot = to == slots_ ? kNone : to, from = (*slot_of)[name];
     if (fixed_[name] != kNone || slot == from) return false;
     if (slot != kNone && allowed_[name * slots_ + slot] == 0) return false;
@@ -226,12 +219,12 @@ class Matcher {
 
   /// All names between two doors of a row go one door on; the last comes first.
   bool rotate(std::vector<std::size_t>* slot_of) {
-    const auto& row = row_[below(2)];
+    const auto& row = row_[dice_.below(2)];
     if (row.size() < 2) return false;
-    std::size_t begin = below(row.size()), end = below(row.size());
+    std::size_t begin = dice_.below(row.size()), end = dice_.below(row.size());
     if (begin == end) return false;
     if (begin > end) std::swap(begin, end);
-    const bool forth = below(2) == 0;
+    const bool forth = dice_.below(2) == 0;
     std::vector<std::size_t> name_at(slots_, kNone);
     for (std::size_t name = 0; name < names_; ++name)
       if ((*slot_of)[name] != kNone) name_at[(*slot_of)[name]] = name;
@@ -272,7 +265,7 @@ class Matcher {
   std::size_t names_, slots_;
   TourMatchParams params_;
   Scores scores_;
-  std::mt19937_64 random_;
+  language::Dice dice_;
   std::vector<char> allowed_;        ///< names x slots
   std::vector<std::size_t> fixed_;   ///< slot of each name that is confirmed
   std::vector<std::size_t> row_[2];  ///< slots of the right and the left, by the way

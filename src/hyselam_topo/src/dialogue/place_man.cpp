@@ -8,6 +8,7 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/utf8.hpp"
+#include "hyselam_topo/topomerg/place_words.hpp"
 #include "hyselam_topological_map/map_geometry.hpp"
 #include "plane.hpp"
 
@@ -196,15 +197,7 @@ void PlaceMan::nameFromShelf(const Place& shelved, Id place, const std::vector<s
     addVirtualPlace(centre, std::min(kMaxRadius, std::sqrt(shelved.area / hyselam::kPi)), names);
     return;
   }
-  auto& words = at(place).words;
-  words.erase(std::remove_if(words.begin(), words.end(),
-                             [](const PlaceTerm& word) { return !word.confirmed; }),
-              words.end());
-  for (const std::string& name : names) {
-    const bool known = std::any_of(words.begin(), words.end(),
-                                   [&](const PlaceTerm& word) { return word.text == name; });
-    if (!known) words.push_back({name, true});
-  }
+  giveWords(names, true, &at(place));
 }
 
 bool PlaceMan::isShelved(const std::string& name) const {
@@ -253,15 +246,7 @@ std::vector<Id> PlaceMan::confirm(Id id, const std::vector<std::string>& names) 
       dropWord(&other, name, false);
     }
   }
-  auto& words = place.words;
-  words.erase(std::remove_if(words.begin(), words.end(),
-                             [](const PlaceTerm& word) { return !word.confirmed; }),
-              words.end());
-  for (const std::string& name : names) {
-    const bool known = std::any_of(words.begin(), words.end(),
-                                   [&](const PlaceTerm& word) { return word.text == name; });
-    if (!known) words.push_back({name, true});
-  }
+  giveWords(names, true, &place);
   auto& rejected = state_.rejected;
   rejected.erase(std::remove_if(rejected.begin(), rejected.end(),
                                 [&](const auto& r) {

@@ -6,7 +6,7 @@
 
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/odds.hpp"
-#include "place_words.hpp"
+#include "hyselam_topo/topomerg/place_words.hpp"
 #include "solutions.hpp"
 
 namespace hyselam_topo {
@@ -170,7 +170,7 @@ AugmentedTopologicalMap withNames(const AugmentedTopologicalMap& map,
     const DescribedPlace* described =
         i < 0 ? nullptr : building.findPlace(problem.names[static_cast<std::size_t>(i)]);
     if (place == nullptr || described == nullptr) continue;
-    merging::giveWords(allNamesOf(*described), problem.confirmed_name[v] >= 0, place);
+    giveWords(allNamesOf(*described), problem.confirmed_name[v] >= 0, place);
   }
   return out;
 }

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "hyselam_common/errors.hpp"
-#include "place_words.hpp"
+#include "hyselam_topo/topomerg/place_words.hpp"
 
 namespace hyselam_topo {
 namespace {
@@ -71,7 +71,7 @@ AugmentedTopologicalMap withTourNames(const AugmentedTopologicalMap& map, const 
     if (!name || !tour.names[*name].is_name || match.of(slot, *name) < least) continue;
     std::vector<std::string> words{tour.names[*name].name};
     words.insert(words.end(), tour.names[*name].aliases.begin(), tour.names[*name].aliases.end());
-    merging::giveWords(words, false, out.findPlace(doors.places[slot]));
+    giveWords(words, false, out.findPlace(doors.places[slot]));
   }
   return out;
 }

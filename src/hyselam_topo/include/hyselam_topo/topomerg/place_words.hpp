@@ -1,4 +1,4 @@
-// The words of a place of the map that a match gives it.
+// The words of a place of the map, guessed by a match or told by people.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 
 #include "hyselam_topological_map/topological_map.hpp"
 
-namespace hyselam_topo::merging {
+namespace hyselam_topo {
 
 /// In the place of all that nobody has confirmed.
 inline void giveWords(const std::vector<std::string>& names, bool confirmed, Place* place) {
@@ -22,4 +22,4 @@ inline void giveWords(const std::vector<std::string>& names, bool confirmed, Pla
   }
 }
 
-}  // namespace hyselam_topo::merging
+}  // namespace hyselam_topo
