@@ -34,6 +34,10 @@ class BenchAllTest(unittest.TestCase):
                               env={**os.environ, "HYSELAM_DATA": str(data or self.root / "nowhere")})
         return done.returncode, done.stdout
 
+    def commit(self, *files):
+        for command in (["add", *files], ["commit", "--quiet", "-m", "y"]):
+            subprocess.run(["git", "-C", str(self.root), "-c", "user.name=a", "-c", "user.email=a@b", *command], check=True)
+
     def out(self):
         return next((self.root / "out/all").iterdir())
 
@@ -63,6 +67,47 @@ class BenchAllTest(unittest.TestCase):
         (self.out() / "first_one.json").unlink()  # as one that was broken off leaves it
         self.all("First")
         self.assertEqual((self.root / "runs").read_text().count("run"), 2)
+
+    def test_what_another_commit_has_kept_counts_while_its_sources_are_the_same(self):
+        for package, needs in (("core", ""), ("robot", "<depend>core</depend>"), ("page", "")):
+            (self.root / "src" / package).mkdir(parents=True)
+            (self.root / "src" / package / "package.xml").write_text(needs)
+        (self.root / "bench/all.yaml").write_text(yaml.safe_dump({"steps": [{**STEPS[0], "of": ["robot"]}]}))
+        self.commit("bench", "src")
+        code, said = self.all("--keep")
+        self.assertEqual(code, 0, said)
+        record = json.loads((self.root / "docs/measured/first_one.json").read_text())
+        self.assertEqual((record["lines"], record["status"]), (["figure 1"], 0))
+        self.assertIn("| the same |", (self.root / "docs/measured.md").read_text())
+        # What it does not depend on, and documents.
+        (self.root / "src/page/page.js").write_text("new\n")
+        (self.root / "src/robot/README.md").write_text("new\n")
+        self.commit("docs", "src")
+        code, said = self.all()
+        self.assertEqual(code, 0, said)
+        self.assertIn(f"kept     First one, of {record['commit']}: its sources are the same", said)
+        self.assertEqual((self.root / "runs").read_text().count("run"), 1)
+        # What its package needs.
+        (self.root / "src/core/core.cpp").write_text("int core;\n")
+        self.commit("src")
+        self.assertIn("begins   First one", self.all()[1])
+        self.assertEqual((self.root / "runs").read_text().count("run"), 2)
+
+    def test_what_a_later_step_takes_is_made_again(self):
+        steps = [{"name": "odds", "command": "echo run >> runs; echo 1 > {out}/odds.txt", "minutes": 1, "makes": "odds.txt"},
+                 {"name": "robots", "command": "cat {out}/odds.txt; cat src/a/size", "minutes": 1, "of": ["a"]}]
+        (self.root / "src/a").mkdir(parents=True)
+        (self.root / "src/a/package.xml").write_text("")
+        (self.root / "src/a/size").write_text("1\n")
+        (self.root / "bench/all.yaml").write_text(yaml.safe_dump({"steps": [{**steps[0], "of": ["none"]}, steps[1]]}))
+        self.commit("bench", "src")
+        self.assertEqual(self.all("--keep")[0], 0)
+        self.commit("docs")
+        self.assertEqual(self.all()[1].count("kept "), 2)
+        (self.root / "src/a/size").write_text("2\n")
+        self.commit("src")
+        code, said = self.all()
+        self.assertEqual((code, (self.root / "runs").read_text().count("run")), (0, 2), said)
 
     def test_what_makes_no_sense_is_refused(self):
         self.assertEqual(self.all("nothing"), (2, "error: there is no step nothing: bench/all --list\n"))
