@@ -233,6 +233,28 @@ class DoctorTest(unittest.TestCase):
         self.assertIn("tf has no frame odom; it has base_link", self.wrong(findings, "tf"), self.said)
         self.assertIn("it has no free cell", self.wrong(findings, "map"))
 
+    def test_what_is_missing_hides_nothing_of_the_rest(self):
+        grid = copy.deepcopy(self.recording.map)
+        grid.data, grid.header.frame_id = [-1] * len(grid.data), "plan"
+        _, findings = self.call(self.robot(topic="base_scan", odom="odom_combined", static=[], pose=False, grid=grid))
+        for name, told in (("scan", "start with scan:=/base_scan"), ("tf", "tf has no frame odom"), ("tf", "static_transform_publisher"),
+                           ("tf", "start SLAM or a localisation"), ("map", "it has no free cell"), ("map", "it is in the frame 'plan'")):
+            self.assertIn(told, self.wrong(findings, name), self.said)
+
+    def test_the_laser_is_looked_at_under_other_names_of_topic_and_frame(self):
+        _, findings = self.call(self.robot(scan_of=upside_down, topic="base_scan", odom="odom_combined", scans=ENOUGH_TO_SEE_THE_MOUNT))
+        self.assertIn("start with scan:=/base_scan", self.wrong(findings, "scan"), self.said)
+        self.assertIn("tf has no frame odom", self.wrong(findings, "tf"))
+        self.assertIn("mounted upside down:", self.wrong(findings, "laser"))
+
+    def test_what_does_not_load_is_told(self):
+        def tells(scan):
+            rospy.logfatal("[/slam] not loaded: parameter 'state' is /w/slam.state")
+            return scan
+        status, findings = self.call(self.robot(scan_of=tells))
+        self.assertEqual(status, 1)
+        self.assertRegex(self.wrong(findings, "log"), r"\[/slam\] not loaded: parameter 'state' is /w/slam.state \(\d+ times in ", self.said)
+
     def test_no_mount_and_no_pose(self):
         _, findings = self.call(self.robot(static=[], pose=False))
         self.assertIn("static_transform_publisher", self.wrong(findings, "tf"), self.said)

@@ -121,7 +121,8 @@ class LaunchFilesTest(unittest.TestCase):
 
     def test_a_relative_path_is_refused_in_words(self):
         for name, arguments, text in (("hyselam.launch", ["map:=x.yaml"], "map is an absolute path, not x.yaml"),
-                                      ("demo.launch", ["bag:=x.bag"], "bag is an absolute path, not x.bag")):
+                                      ("demo.launch", ["bag:=x.bag"], "bag is an absolute path, not x.bag"),
+                                      ("two_robots.launch", ["bag:=x.bag"], "bag is an absolute path, not x.bag")):
             done = subprocess.run(["roslaunch", os.path.join(self.folder, name), *arguments], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                                   text=True, timeout=180)
             self.assertNotEqual(done.returncode, 0, name)
@@ -200,6 +201,12 @@ class LaunchFilesTest(unittest.TestCase):
         self.assertIn("--pause", player("paused:=true"))
         self.assertNotIn("--pause", player())
 
+    def test_a_demo_that_starts_later_knows_the_transforms_of_before(self):
+        for name, more in (("demo.launch", []), ("demo_localization.launch", ["map:=/nowhere/x.yaml"])):
+            nodes = self.whole("bag:=/nowhere/x.bag", "start:=12.5", *more, name=name)[0]
+            self.assertEqual(nodes["/earlier_transforms"].args.split(), ["/nowhere/x.bag", "12.5"])
+            self.assertNotIn("/earlier_transforms", self.whole("bag:=/nowhere/x.bag", *more, name=name)[0])
+
     def test_robots_share_the_master_and_the_map(self):
         nodes, config = self.whole("first:=a", "second:=b", "work_dir:=/w", name="two_robots.launch")
         of = {robot: {n[len(robot) + 2:] for n in nodes if n.startswith(f"/{robot}/")} for robot in "ab"}
@@ -213,6 +220,23 @@ class LaunchFilesTest(unittest.TestCase):
         for node in nodes.values():
             for source, target in node.remap_args:
                 self.assertFalse(target.startswith("/"), f"{node.name}: {source} -> {target}")
+
+    def test_robots_have_bags_topics_and_parameters_of_their_own(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
+            file.write("further: 7\n")
+            file.flush()
+            for layer, more in (("slam", []), ("localization", ["map:=/nowhere/x.yaml"])):
+                for robot, which in (("robot1", "first"), ("robot2", "second")):
+                    nodes, config = self.whole(f"{which}_{layer}_params:={file.name}", f"{which}_scan:=base_scan", *more, name="two_robots.launch")
+                    self.assertEqual([key for key in config.params if key.endswith("/further")], [f"/{robot}/{layer}/further"])
+                    self.assertEqual([n for n in nodes if ["scan", "base_scan"] in [list(r) for r in nodes[n].remap_args]],
+                                     [n for n in nodes if n in (f"/{robot}/{layer}", f"/{robot}/fsd", f"/{robot}/words", f"/{robot}/words_fsd")])
+        nodes, config = self.whole("bag:=/nowhere/x.bag", "rate:=3", name="two_robots.launch")
+        self.assertEqual(nodes["/player"].args.split()[-3:], ["--rate", "3", "/nowhere/x.bag"])
+        self.assertTrue(config.params["/use_sim_time"].value)
+        nodes, config = self.whole(name="two_robots.launch")
+        self.assertNotIn("/player", nodes)
+        self.assertNotIn("/use_sim_time", config.params)
 
     def test_values_of_a_params_file_win(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -59,6 +59,7 @@ class SlamRig(Rig):
         if self.map_heard:
             self.map_heard.close()
         super().close()
+        self.loaded = False  # once is enough
 
     def call(self, service, kind=Trigger, *args):
         rospy.wait_for_service(f"{self.node}/{service}", WAIT)
@@ -109,6 +110,8 @@ class SlamInputTest(unittest.TestCase):
             rig = self.rig(name=str(i), **{name: value})
             self.assertFalse(rig.loaded, name)
             rig.wait_said(name, f"{value:g}" if isinstance(value, float) else value, level=Log.FATAL)
+            if name == "state":
+                rig.wait_said("work_dir", "mkdir -p /no/such/folder", level=Log.FATAL)
         rig = self.rig(name="good")
         rig.feed(3)
         self.assertEqual(rig.value("scans used"), "3")
@@ -117,13 +120,38 @@ class SlamInputTest(unittest.TestCase):
         rig = self.rig(keyframe_stepp=0.5)
         rig.wait_said("keyframe_stepp", "keyframe_step", level=Log.WARN)
 
-    def test_state_that_is_none_is_refused(self):
+    def test_a_state_that_cannot_be_used_is_put_aside(self):
         path = self.path("none.slam")
-        with open(path, "w") as file:
-            file.write("P5 3 3 255\n")
-        rig = self.rig(state=path)
-        self.assertFalse(rig.loaded)
-        rig.wait_said(path, "is no state of SLAM", level=Log.FATAL)
+        contents = "P5 3 3 255\n", "again\n"
+        for name, content, kept in (("first", contents[0], path + ".damaged"), ("again", contents[1], path + ".damaged.2")):
+            with open(path, "w") as file:
+                file.write(content)
+            rig = self.rig(name=name, state=path, save_period=0.0)
+            self.assertTrue(rig.loaded)
+            rig.wait_said("begins a new map", path, "is no state of SLAM", kept, level=Log.ERROR)
+            self.assertFalse(os.path.exists(path))
+            rig.feed(60)
+            self.assert_right(rig)
+            self.assertIn("a new map was begun, the one before is kept as " + kept, rig.fresh_diagnosis().message)
+            # Told until people save or load one.
+            self.assertTrue(rig.call("save", StatePath, "").success)
+            self.assertNotIn("a new map was begun", rig.fresh_diagnosis().message)
+            rig.close()
+            with open(kept) as file:
+                self.assertEqual(file.read(), content)
+        with open(path + ".damaged") as file:
+            self.assertEqual(file.read(), contents[0], "what was put aside before stays")
+        # Saved at the end as well, and gone on with.
+        rig = self.rig(name="goes_on", state=path)
+        rig.feed(1)
+        self.assertEqual(rig.value("runs"), "2")
+
+    def test_a_state_that_can_neither_be_used_nor_renamed_is_never_written(self):
+        rig = self.rig(state="/proc/version")  # not even by root
+        self.assertTrue(rig.loaded)
+        rig.feed(20)
+        self.assertIn("not saved: /proc/version: byte 0: is no state of SLAM", rig.fresh_diagnosis().message)
+        self.assertIn("none given", rig.call("save", StatePath, "").message)
 
     def test_damaged_states_are_refused_and_the_map_stays(self):
         rig = self.rig()
@@ -183,18 +211,19 @@ class SlamInputTest(unittest.TestCase):
         wait_until(lambda: rig.value("since the last session").startswith("not known") == (rig.value("place of the run") != "tied"),
                    "changes are known where the run is tied")
         self.assert_right(rig)
-        # The end saves as well; a damaged file stops the start with the reason.
+        # The end saves as well; a damaged file is put aside with the reason, and a new map begun.
         rig.process.send_signal(signal.SIGINT)
         self.assertEqual(rig.process.wait(), 0)
         with open(path, "rb") as file:
             self.assertGreater(len(file.read()), len(saved))
         with open(path, "wb") as file:
             file.write(saved[:1000])
-        ended = subprocess.run([find_node("ngram_slam", "slam_node")[0], "__name:=slam", f"__ns:=/{rig.name}"],
-                               stderr=subprocess.PIPE, universal_newlines=True, timeout=WAIT)
-        self.assertEqual(ended.returncode, 2)
-        self.assertIn("truncated", ended.stderr)
-        self.assertIn(path, ended.stderr)
+        rig.diagnostics_seen.messages.clear()
+        rig.start()
+        wait_until(lambda: rig.diagnosis() and "truncated" in rig.diagnosis().message, lambda: str(rig.diagnosis()))
+        self.assertEqual(rig.value("keyframes"), "0")
+        with open(path + ".damaged", "rb") as file:
+            self.assertEqual(file.read(), saved[:1000])
 
     def test_sessions_end_while_it_drives(self):
         rig = self.rig(session_path=3.0)

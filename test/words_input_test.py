@@ -286,7 +286,7 @@ class WordsInputTest(unittest.TestCase):
             self.assertEqual(file.read(), b"NGRAMTXT and then nonsense")
 
     def test_corpus_in_a_missing_folder(self):
-        self.assert_not_loaded("corpus", "existing folder", corpus=self.path("no/such/c.corpus"))
+        self.assert_not_loaded("corpus", "existing folder", "work_dir", corpus=self.path("no/such/c.corpus"))
 
     def test_parameter_out_of_range(self):
         self.assert_not_loaded("step", "0", step=0.0)

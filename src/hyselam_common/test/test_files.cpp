@@ -11,6 +11,7 @@
 #include "hyselam_common/binary_io.hpp"
 #include "hyselam_common/errors.hpp"
 #include "hyselam_common/folder.hpp"
+#include "hyselam_common/put_aside.hpp"
 #include "hyselam_common/testing/files.hpp"
 #include "hyselam_common/trajectory_io.hpp"
 
@@ -44,6 +45,45 @@ TEST(Folder, IsMadeWithThoseAboveItUnlessItIsThere) {
     EXPECT_EQ(messageOf<InputError>([&] { makeFolder(path); }),
               path + ": is not a folder and cannot be made one");
   }
+}
+
+TEST(Folder, OfAStateThatIsNotThereIsToldWithTheArgumentThatNamesItAndNotMade) {
+  TemporaryDirectory d;
+  checkFolderOfState("state", "");
+  checkFolderOfState("state", "beside");
+  checkFolderOfState("state", d / "x.state");
+  const std::string message =
+      messageOf<ParameterError>([&] { checkFolderOfState("state", d / "work/x.state"); });
+  for (const std::string& part : {std::string("'state'"), std::string("work_dir"),
+                                  d / "work/x.state", "mkdir -p " + d / "work"}) {
+    EXPECT_TRUE(mentions(message, part)) << message;
+  }
+  EXPECT_EQ(d.fileCount(), 0U);
+}
+
+TEST(PutAside, NeverTakesThePlaceOfWhatWasPutAsideBefore) {
+  TemporaryDirectory d;
+  for (const char* content : {"first", "second", "third"}) {
+    writeFile(d / "a", content);
+    EXPECT_TRUE(mayExist(d / "a"));
+    const auto aside = putAside(d / "a");
+    ASSERT_TRUE(aside);
+    EXPECT_EQ(fileBytes(*aside), content);
+    EXPECT_TRUE(mentions(keptAs(aside), *aside));
+    EXPECT_FALSE(mayExist(d / "a"));
+  }
+  EXPECT_EQ(fileBytes(d / "a.damaged"), "first");
+  EXPECT_EQ(fileBytes(d / "a.damaged.3"), "third");
+  EXPECT_EQ(d.fileCount(), 3U);
+}
+
+TEST(PutAside, SaysWhatCannotBeRenamed) {
+  TemporaryDirectory d;
+  const auto aside = putAside(d / "none");
+  EXPECT_FALSE(aside);
+  EXPECT_EQ(keptAs(aside), "");
+  std::filesystem::create_symlink(d / "loop", d / "loop");
+  EXPECT_TRUE(mayExist(d / "loop")) << "what lies there cannot be looked at";
 }
 
 TEST(AtomicFile, ReplacesAFileAndLeavesNothingElse) {

@@ -45,12 +45,16 @@ struct Talk {
     return hyselam_topo::nameStateOf(*dialogue.map().findPlace(id)) ==
            hyselam_topo::NameState::kConfirmed;
   }
+  /// The name of a room is only guessed.
+  void guess(hyselam_topo::Id id, const std::string& name) {
+    hyselam_topo::DialogueState state = dialogue.state();
+    state.places.map.findPlace(id)->words = {{name, false}};
+    dialogue.restore(state);
+  }
   hyselam_topo::Question::Kind asked() const { return dialogue.question().kind; }
   /// The robot asks whether the room where it stands is the kitchen, which is only guessed.
   std::string askAboutKitchen() {
-    hyselam_topo::DialogueState state = dialogue.state();
-    state.places.map.findPlace(1)->words = {{"kitchen", false}};
-    dialogue.restore(state);
+    guess(1, "kitchen");
     at(2.0);
     return dialogue.askHere().text();
   }

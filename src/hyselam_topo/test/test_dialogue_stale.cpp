@@ -79,14 +79,48 @@ TEST(DialogueStale, ANameOfSeveralToldPlacesIsTakenForTheRoomAlone) {
 
 TEST(DialogueStale, AGuessThatFitsSeveralToldPlacesIsConfirmed) {
   TalkOfToilets talk;
-  DialogueState state = talk.dialogue.state();
-  state.places.map.findPlace(2)->words = {{"toilet", false}};
-  talk.dialogue.restore(state);
+  talk.guess(2, "toilet");
   talk.at(6.0);
   ASSERT_TRUE(has(talk.dialogue.askHere().text(), "toilet"));
   talk.say("Yes.");
   EXPECT_EQ(talk.names(2), Names{"toilet"});
   EXPECT_TRUE(talk.isConfirmed(2));
+}
+
+TEST(DialogueStale, AYesIsOfThePlaceThatWasAskedAboutAlsoWhereTheRobotHasLeftIt) {
+  Talk talk;
+  talk.guess(2, "toilet");
+  talk.at(6.0);
+  ASSERT_TRUE(has(talk.dialogue.askHere().text(), "as the name of this place?"));
+  talk.at(1.0);
+  EXPECT_EQ(talk.asked(), Question::Kind::kConfirmName);
+  EXPECT_EQ(talk.dialogue.openQuestion(), "Is SS02 the toilet?");
+  talk.say("Yes.");
+  EXPECT_TRUE(talk.isConfirmed(2));
+  EXPECT_TRUE(talk.names(1).empty());
+  EXPECT_EQ(talk.asked(), Question::Kind::kNone);
+}
+
+TEST(DialogueStale, AQuestionThatWasLeftMakesRoomForOneAboutWhereTheRobotIs) {
+  Talk talk;
+  talk.guess(2, "toilet");
+  talk.guess(1, "kitchen");
+  talk.at(6.0);
+  ASSERT_TRUE(has(talk.dialogue.askHere().text(), "toilet"));
+  talk.at(1.0);
+  ASSERT_TRUE(has(talk.dialogue.askHere().text(), "kitchen"));
+  talk.say("No.");
+  EXPECT_EQ(talk.names(2), Names{"toilet"});
+  EXPECT_FALSE(talk.isConfirmed(2));
+  EXPECT_TRUE(talk.names(1).empty());
+}
+
+TEST(DialogueStale, ANameIsNotTakenForAPlaceThatTheRobotHasLeft) {
+  Talk talk;
+  talk.at(6.0);
+  ASSERT_EQ(talk.dialogue.askHere().text(), "What is the name of this place?");
+  talk.at(1.0);
+  EXPECT_EQ(talk.asked(), Question::Kind::kNone);
 }
 
 TEST(DialogueStale, AClickedNameThatFitsSeveralToldPlacesIsTaken) {

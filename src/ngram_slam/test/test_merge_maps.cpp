@@ -11,6 +11,7 @@
 #include "hyselam_common/robot_log.hpp"
 #include "hyselam_common/testing/files.hpp"
 #include "hyselam_common/trajectory_io.hpp"
+#include "merge_advice.hpp"
 #include "ngram_slam/slam/slam_engine.hpp"
 #include "ngram_slam/slam/slam_state_io.hpp"
 #include "tool_test.hpp"
@@ -69,6 +70,24 @@ TEST_F(MergeMaps, writesOneMapAndWhoMetWhom) {
   const std::string page = fileBytes(out + "/report.html");
   EXPECT_NE(page.find("2 sessions, 1 map"), std::string::npos);
   EXPECT_NE(page.find("data:image/png;base64,"), std::string::npos);
+}
+
+TEST_F(MergeMaps, advisesWhereManyLoopsAreVerifiedAndNoneIsBelieved) {
+  MergedMaps merged;
+  for (const std::size_t session : {0, 1, 2}) {
+    merged.maps.push_back({{}, {{session, {}, {}, {}, {}}}});
+  }
+  merged.meetings = {{0, 1, 0, 0, 310, 0.0}, {0, 2, 0, 0, 3, 0.0}, {1, 2, 4, 0, 50, 0.9}};
+  const std::vector<std::string> labels{"monday", "tuesday", "elsewhere"};
+  const std::string advice = adviceOn(merged, labels, 0.0);
+  for (const char* part : {"monday and tuesday: 310 loops verified, none believed",
+                           "--place-interval 2", "--start unknown"}) {
+    EXPECT_NE(advice.find(part), std::string::npos) << advice;
+  }
+  EXPECT_EQ(advice.find("elsewhere"), std::string::npos) << advice;
+  EXPECT_EQ(adviceOn(merged, labels, 2.0).find("--place-interval"), std::string::npos);
+  merged.maps[0].parts.push_back(merged.maps[1].parts[0]);
+  EXPECT_EQ(adviceOn(merged, labels, 0.0), "") << "they lie in one map";
 }
 
 TEST_F(MergeMaps, givesTheSameFilesWithOneThreadAndWithThree) {

@@ -14,4 +14,16 @@ void makeFolder(const std::string& path) {
   }
 }
 
+void checkFolderOfState(const std::string& parameter, const std::string& file) {
+  if (file.empty()) return;
+  const std::filesystem::path parent = std::filesystem::path(file).parent_path();
+  const std::string folder = parent.empty() ? "." : parent.string();
+  std::error_code error;
+  if (std::filesystem::is_directory(folder, error)) return;
+  throw ParameterError(parameter, file,
+                       "a file in an existing folder, and " + folder +
+                           " is none; hyselam.launch has it from work_dir. To make it: mkdir -p " +
+                           folder);
+}
+
 }  // namespace hyselam

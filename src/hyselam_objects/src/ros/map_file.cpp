@@ -3,10 +3,10 @@
 #include <ros/console.h>
 
 #include <chrono>
-#include <filesystem>
 #include <utility>
 
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/put_aside.hpp"
 #include "hyselam_common/ros/conversions.hpp"
 #include "hyselam_objects/ros/conversions.hpp"
 
@@ -42,18 +42,15 @@ MapFile::MapFile(std::string log_name, std::string path)
 ObjectMap MapFile::load(const std::string& frame_id) {
   ObjectMap map;
   map.frame_id = frame_id;
-  std::error_code unknown;  // whether it exists: then reading it gives the reason
-  if (!path_.empty() && (std::filesystem::exists(path_, unknown) || unknown)) {
+  if (!path_.empty() && hyselam::mayExist(path_)) {
     try {
       map = loadMapInFrame(frame_id, path_);
     } catch (const std::exception& e) {
       error_ = e.what();
-      const std::string renamed = path_ + ".damaged";
-      std::error_code failed;
-      std::filesystem::rename(path_, renamed, failed);
+      const auto aside = hyselam::putAside(path_);
       ROS_ERROR_STREAM(log_name_ << " starts without its objects: " << e.what()
-                                 << (failed ? "" : "; the file is kept as " + renamed));
-      if (failed) path_.clear();
+                                 << hyselam::keptAs(aside));
+      if (!aside) path_.clear();
     }
   }
   saved_ = map;

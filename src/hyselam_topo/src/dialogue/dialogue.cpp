@@ -183,11 +183,10 @@ void Dialogue::enterPlace(Reply& out) {
   const Id here = robot().place;
   if (here != talk_.asked) {
     talk_.asked = 0;
-    // The robot has left the place that it asked about.
-    if (question().isAboutName() && question().place != here) talk_.questions.drop();
+    if (question().isAboutName() && question().place != here) leaveQuestion();
   }
   if (here == 0 || robot().in_doorway || here == talk_.asked) return;
-  if (talk_.questions.isOpen()) return;
+  if (!talk_.questions.yields()) return;
   talk_.asked = here;
   askAboutPlace(here, params_.ask, out);
 }
@@ -195,7 +194,7 @@ void Dialogue::enterPlace(Reply& out) {
 Reply Dialogue::askHere() {
   Reply out = reply();
   const Id here = robot().place;
-  if (here == 0 || talk_.questions.isOpen()) return out;
+  if (here == 0 || !talk_.questions.yields()) return out;
   askAboutPlace(here, AskPolicy::kAlways, out);
   return out;
 }

@@ -16,6 +16,33 @@ void Dialogue::dropStaleQuestion() {
   if (!isStillValid(question(), places_)) talk_.questions.drop();
 }
 
+void Dialogue::leaveQuestion() {
+  if (question().kind == Question::Kind::kName || !isStillValid(question(), places_)) {
+    talk_.questions.drop();
+  } else {
+    talk_.questions.leave(sayFromAfar(question()));
+  }
+}
+
+std::string Dialogue::sayFromAfar(const Question& question) const {
+  const Phrases& p = phrases();
+  const Place& place = *places_.map().findPlace(question.place);
+  const std::string names = p.list(said(question.names));
+  switch (question.kind) {
+    case Question::Kind::kConfirmName:
+      return p.say("ask_confirm_there", {{"code", codeOf(place)}, {"names", names}});
+    case Question::Kind::kAlsoName:
+      return p.say("ask_also_there", {{"code", codeOf(place)},
+                                      {"known", p.list(said(namesOf(place)))},
+                                      {"names", p.list(question.names)},
+                                      {"name", question.names.front()}});
+    case Question::Kind::kNewName:
+      return p.say("ask_new_name_there", {{"name", p.list(question.names)}});
+    default:
+      return p.say("ask_name_there", {{"code", codeOf(place)}});
+  }
+}
+
 void Dialogue::askConfirm(Id place, Reply& out) {
   Question question;
   question.kind = Question::Kind::kConfirmName;
@@ -39,16 +66,12 @@ void Dialogue::askAlso(Id place, const std::vector<std::string>& names, Reply& o
   question.place = place;
   question.names = names;
   const std::vector<std::string> known = namesOf(*places_.map().findPlace(place));
-  ask(std::move(question),
-      place == robot().place
-          ? p.say(
-                "ask_also",
-                {{"known", p.list(said(known))}, {"names", p.list(names)}, {"name", names.front()}})
-          : p.say("ask_also_there", {{"code", codeOf(*places_.map().findPlace(place))},
-                                     {"known", p.list(said(known))},
-                                     {"names", p.list(names)},
-                                     {"name", names.front()}}),
-      out);
+  const std::string sentence = place == robot().place
+                                   ? p.say("ask_also", {{"known", p.list(said(known))},
+                                                        {"names", p.list(names)},
+                                                        {"name", names.front()}})
+                                   : sayFromAfar(question);
+  ask(std::move(question), sentence, out);
 }
 
 void Dialogue::askNewName(Id place, const std::vector<std::string>& names,
@@ -124,11 +147,8 @@ void Dialogue::askFromAfar(Id id, Reply& out) {
   question.place = place.id;
   question.kind = guessed ? Question::Kind::kConfirmName : Question::Kind::kName;
   if (guessed) question.names = namesOf(place);
-  const std::string names = phrases().list(said(question.names));
-  ask(std::move(question),
-      guessed ? phrases().say("ask_confirm_there", {{"code", codeOf(place)}, {"names", names}})
-              : phrases().say("ask_name_there", {{"code", codeOf(place)}}),
-      out);
+  const std::string sentence = sayFromAfar(question);
+  ask(std::move(question), sentence, out);
 }
 
 void Dialogue::settleQuestion(Turn& turn) {

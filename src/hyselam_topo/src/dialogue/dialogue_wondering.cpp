@@ -48,9 +48,8 @@ bool Dialogue::takeWhere(const ParsedText& text, Turn& turn) {
     question.kind = Question::Kind::kConfirmName;
     question.place = *place;
     question.names = {name};
-    const std::string code = codeOf(*places_.map().findPlace(*place));
-    ask(std::move(question),
-        phrases().say("ask_confirm_there", {{"code", code}, {"names", said(name)}}), turn.reply);
+    const std::string sentence = sayFromAfar(question);
+    ask(std::move(question), sentence, turn.reply);
   } else if (isNamedOtherwise(*place, {name})) {
     askAlso(*place, {name}, turn.reply);
   } else {

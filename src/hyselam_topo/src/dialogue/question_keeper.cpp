@@ -38,6 +38,12 @@ void QuestionKeeper::ask(Question question, std::string sentence) {
   sentence_ = std::move(sentence);
   is_new_ = true;
   repeated_ = false;
+  yields_ = false;
+}
+
+void QuestionKeeper::leave(std::string sentence) {
+  sentence_ = std::move(sentence);
+  yields_ = true;
 }
 
 void QuestionKeeper::drop() {

@@ -1,6 +1,5 @@
 // The state file of TopoEngine, and its diagnostics.
-#include <filesystem>
-
+#include "hyselam_common/put_aside.hpp"
 #include "hyselam_topo/dialogue/dialogue_state.hpp"
 #include "hyselam_topo/ros/dialogue_markers.hpp"
 #include "hyselam_topo/ros/topo_engine_server.hpp"
@@ -16,26 +15,17 @@ constexpr double kSavePeriod = 2.0;  // at most so often [s]
 // ---- Files ----
 
 void TopoEngineServer::restoreState() {
-  // What cannot even be looked at is treated as a file that cannot be read.
-  std::error_code unseen;
-  const bool has_state = !params_.state_file.empty() &&
-                         (std::filesystem::exists(params_.state_file, unseen) || unseen);
-  if (!has_state) return;
+  if (params_.state_file.empty() || !hyselam::mayExist(params_.state_file)) return;
   try {
     load(params_.state_file);
   } catch (const std::exception& e) {
-    // Neither lost nor in the way: the robot begins afresh.
-    const std::string aside = params_.state_file + ".damaged";
-    std::error_code failed;
-    std::filesystem::rename(params_.state_file, aside, failed);
-    ROS_ERROR_STREAM(who_ << " begins without its state: " << e.what()
-                          << (failed ? "" : "; the file is kept as " + aside));
-    if (failed) {
+    const auto aside = hyselam::putAside(params_.state_file);
+    ROS_ERROR_STREAM(who_ << " begins without its state: " << e.what() << hyselam::keptAs(aside));
+    if (aside) {
+      input_.put_aside = "begins without its state, kept as " + *aside + ": " + e.what();
+    } else {
       input_.file_error = e.what();
       params_.state_file.clear();
-    } else {
-      input_.put_aside =
-          std::string("begins without its state, kept as ") + aside + ": " + e.what();
     }
   }
 }

@@ -1,8 +1,7 @@
 #include "ngram_slam/ros/parameters.hpp"
 
-#include <sys/stat.h>
-
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/folder.hpp"
 
 namespace ngram_slam {
 
@@ -13,13 +12,6 @@ namespace {
 
 /// Beyond the kernel's radius: how far the robot drives before full densities, by default [m].
 constexpr double kLookBackMargin = 0.5;
-
-bool isInFolder(const std::string& file) {
-  struct stat info {};
-  const auto slash = file.rfind('/');
-  const std::string folder = slash == std::string::npos ? "." : file.substr(0, slash + 1);
-  return ::stat(folder.c_str(), &info) == 0 && S_ISDIR(info.st_mode);
-}
 
 }  // namespace
 
@@ -60,9 +52,7 @@ void WordsServerParams::validate() const {
   if (!fromScan() && sensor.look_back > 0.0) {
     throw ParameterError("look_back", sensor.look_back, "0 unless input is scan");
   }
-  if (!corpus.empty() && !isInFolder(corpus)) {
-    throw ParameterError("corpus", corpus, "a file in an existing folder");
-  }
+  hyselam::checkFolderOfState("corpus", corpus);
   input.validate();
   recognizer.validate();
   semantic.validate();

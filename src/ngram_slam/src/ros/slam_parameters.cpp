@@ -1,9 +1,8 @@
 #include "ngram_slam/ros/slam_parameters.hpp"
 
-#include <sys/stat.h>
-
 #include "drawn_map.hpp"
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/folder.hpp"
 #include "ngram_slam/slam/slam_engine.hpp"
 
 namespace ngram_slam {
@@ -56,12 +55,7 @@ void SlamServerParams::validate() const {
     throw ParameterError("global_frame_id", "'" + global_frame_id + "'",
                          "a name other than odom_frame_id");
   }
-  struct stat info {};
-  const auto slash = state.rfind('/');
-  const std::string folder = slash == std::string::npos ? "." : state.substr(0, slash + 1);
-  if (!state.empty() && (::stat(folder.c_str(), &info) != 0 || !S_ISDIR(info.st_mode))) {
-    throw ParameterError("state", state, "a file in an existing folder");
-  }
+  hyselam::checkFolderOfState("state", state);
 }
 
 std::optional<hyselam::InitialPose> SlamServerParams::initialPose() const {

@@ -1,12 +1,11 @@
 #include "ngram_slam/ros/slam_server.hpp"
 
-#include <sys/stat.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/put_aside.hpp"
 #include "hyselam_common/ros/conversions.hpp"
 #include "hyselam_common/ros/initial_pose.hpp"
 #include "hyselam_common/ros/server_setup.hpp"
@@ -26,11 +25,6 @@ namespace {
 constexpr double kStatusRate = 1.0;      // [1/s]
 constexpr double kOdometryWindow = 0.1;  // [m], [rad] searched where odometry gives the start
 constexpr double kOdometryDrift = 0.1;   // [m/m], [rad/m]
-
-bool exists(const std::string& path) {
-  struct stat info {};
-  return ::stat(path.c_str(), &info) == 0;
-}
 
 /// Where the robot is when its odometry went on from elsewhere: beside the keyframe of the last run
 /// that was taken nearest by odometry. Right for a bag that begins again and for a clock that was
@@ -85,14 +79,7 @@ SlamServer::SlamServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh)
       status_rate_(kStatusRate),
       map_rate_(drawsMaps() ? 1.0 / params_.map_update_interval : -1.0),
       publisher_(nh) {
-  SlamState state;
-  if (!params_.state.empty() && exists(params_.state)) {
-    state = consolidated(SlamStateFile::load(params_.state, params_.slam.surface),
-                         params_.slam.consolidation);
-    ROS_INFO_STREAM(log_name_ << " goes on with " << params_.state << ": " << state.keyframes.size()
-                              << " keyframes, " << state.loops.size() << " loops");
-  }
-  mapping_ = std::make_unique<Mapping>(params_, std::move(state));
+  mapping_ = std::make_unique<Mapping>(params_, storedState());
   if (!mapping_->engine.keyframes().empty()) next_scan_ = NextScan::kAfterPause;
   map_due_ = drawsMaps() && !mapping_->engine.keyframes().empty();
 
@@ -119,6 +106,30 @@ SlamServer::SlamServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh)
   services_.spinner->start();
   job_thread_ = std::thread([this] { runJobs(); });
   map_thread_ = std::thread([this] { runMapper(); });
+}
+
+/// What is stored; an empty state where nothing is, or nothing that can be used: then SLAM begins
+/// anew, as a robot whose map is broken has to drive all the same.
+SlamState SlamServer::storedState() {
+  if (params_.state.empty() || !hyselam::mayExist(params_.state)) return {};
+  try {
+    SlamState state = consolidated(SlamStateFile::load(params_.state, params_.slam.surface),
+                                   params_.slam.consolidation);
+    ROS_INFO_STREAM(log_name_ << " goes on with " << params_.state << ": " << state.keyframes.size()
+                              << " keyframes, " << state.loops.size() << " loops");
+    return state;
+  } catch (const hyselam::InputError& e) {
+    const auto aside = hyselam::putAside(params_.state);
+    ROS_ERROR_STREAM(log_name_ << " begins a new map: " << e.what() << hyselam::keptAs(aside));
+    if (aside) {
+      status_.put_aside =
+          "a new map was begun, the one before is kept as " + *aside + ": " + e.what();
+    } else {  // then nothing is written over it
+      status_.save_error = e.what();
+      params_.state.clear();
+    }
+    return {};
+  }
 }
 
 SlamServer::~SlamServer() {

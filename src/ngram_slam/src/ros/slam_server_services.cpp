@@ -76,7 +76,7 @@ void SlamServer::saveIfChanged(const char* when) {
 
 std::string SlamServer::pathOrDefault(const std::string& path) const {
   if (path.empty() && params_.state.empty()) {
-    throw hyselam::InputError("path", "", "none given, and the parameter state is empty");
+    throw hyselam::InputError("path", "", "none given, and no state is kept");
   }
   return path.empty() ? params_.state : path;
 }
@@ -86,6 +86,8 @@ bool SlamServer::onSave(hyselam_msgs::StatePath::Request& request,
   try {
     out.message = saveState(pathOrDefault(request.path));
     out.success = true;
+    const Lock lock(mutex_);
+    status_.put_aside.clear();
   } catch (const std::exception& e) {
     out.success = false;
     out.message = e.what();
@@ -112,6 +114,7 @@ bool SlamServer::onLoad(hyselam_msgs::StatePath::Request& request,
       initial_pose_.reset();
       result_wait_.forget();
       map_due_ = drawsMaps();
+      status_.put_aside.clear();
     }
     work_.notify_all();
     out.success = true;
@@ -190,6 +193,7 @@ void SlamServer::report(DiagnosticStatus& status) {
       addRemark(status, DiagnosticStatus::WARN, "not recognised in the known map yet");
     }
     if (paused_) addRemark(status, DiagnosticStatus::WARN, "paused");
+    if (!status_.put_aside.empty()) addRemark(status, DiagnosticStatus::WARN, status_.put_aside);
     addError("optimization: ", status_.job_error);
     addError("map: ", status_.map_error);
     addError("not saved: ", status_.save_error);

@@ -16,6 +16,7 @@
 #include "hyselam_common/progress.hpp"
 #include "hyselam_common/tool.hpp"
 #include "hyselam_common/trajectory_io.hpp"
+#include "merge_advice.hpp"
 #include "ngram_slam/slam/map_merging.hpp"
 #include "ngram_slam/slam/present_map.hpp"
 #include "ngram_slam/slam/slam_state_io.hpp"
@@ -186,7 +187,7 @@ json toJson(const MapMergingCounters& c) {
 }
 
 /// For people: which maps there are now, and who met whom.
-void print(const json& report) {
+void print(const json& report, const std::string& advice) {
   for (const json& map : report["maps"]) {
     std::cout << map["name"].get<std::string>() << ": " << map["keyframes"] << " keyframes of";
     for (const json& s : map["sessions"]) std::cout << " " << s["name"].get<std::string>();
@@ -203,7 +204,8 @@ void print(const json& report) {
   }
   if (report["maps"].size() > 1) {
     std::cout << "\n"
-              << report["maps"].size() << " maps that do not know where they lie to each other.\n";
+              << report["maps"].size() << " maps that do not know where they lie to each other.\n"
+              << advice;
   }
 }
 
@@ -261,7 +263,7 @@ json run(const Options& o) {
   hyselam::writeFileAtomically(o.out + "/report.json",
                                [&](std::ostream& out) { out << report.dump(2) << "\n"; });
   makePage("merge_report", o.out);
-  print(report);
+  print(report, adviceOn(merged, labels, o.place_interval));
   report["cpu_seconds"] = cpuSeconds() - begin;
   return report;
 }

@@ -34,7 +34,7 @@ class ServerNodelet : public nodelet::Nodelet {
       onServer(*server_);
     } catch (const std::exception& error) {
       // The loader takes what leaves onInit as "did not load".
-      NODELET_FATAL_STREAM("not loaded: " << error.what());
+      NODELET_FATAL_STREAM('[' << getName() << "] not loaded: " << error.what());
       throw;
     }
   }

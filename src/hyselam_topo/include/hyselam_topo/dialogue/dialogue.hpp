@@ -346,6 +346,10 @@ class Dialogue {
   void askConfirm(Id place, Reply& reply);
   /// The open question is over if what it is about is gone.
   void dropStaleQuestion();
+  /// The robot is not where the question is about: what is answered with yes or no stays open.
+  void leaveQuestion();
+  /// A question about a name, of a place by its generated id.
+  std::string sayFromAfar(const Question& question) const;
   void askName(Id place, Reply& reply);
   /// Asks whether a place with other names has these as well.
   void askAlso(Id place, const std::vector<std::string>& names, Reply& out);

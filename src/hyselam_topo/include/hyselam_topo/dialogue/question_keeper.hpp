@@ -70,7 +70,8 @@ std::vector<Id> placesIn(const Question& question);
 bool isStillValid(const Question& question, const PlaceMan& places);
 
 /// Keeps one question at most. It is over when it is answered, when another one is asked, and
-/// after the next utterance about something else.
+/// after the next utterance about something else; for the name of a place also when the robot
+/// leaves that, as the next name that it hears would be of another one.
 class QuestionKeeper {
  public:
   const Question& question() const { return question_; }
@@ -80,6 +81,11 @@ class QuestionKeeper {
 
   void ask(Question question, std::string sentence);
   void drop();
+  /// The robot is no longer in the place that it asked about: it stays open, as one would put it
+  /// from elsewhere, until there is something to ask about where the robot is now.
+  void leave(std::string sentence);
+  /// Whether a question about where the robot is now takes its place.
+  bool yields() const { return !isOpen() || yields_; }
 
   /// What an utterance had to do with the question.
   enum class Topic {
@@ -99,6 +105,7 @@ class QuestionKeeper {
   std::string sentence_;
   bool is_new_ = false;
   bool repeated_ = false;
+  bool yields_ = false;
 };
 
 }  // namespace hyselam_topo

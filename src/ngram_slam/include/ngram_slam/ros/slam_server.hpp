@@ -43,7 +43,8 @@ namespace ngram_slam {
 class SlamServer {
  public:
   /// Reads and checks the parameters of `private_nh` and the state, before anything is subscribed.
-  /// @throws hyselam::ParameterError, hyselam::InputError for a state that cannot be used.
+  /// A state that cannot be used is renamed (hyselam::putAside()), told of, and a new map begun.
+  /// @throws hyselam::ParameterError
   SlamServer(ros::NodeHandle nh, const ros::NodeHandle& private_nh);
   /// Saves the state.
   ~SlamServer();
@@ -73,6 +74,7 @@ class SlamServer {
   struct Status {
     std::string job_error, map_error, save_error;
     std::string session_error;
+    std::string put_aside;  // why a state was, until people save or load one
     double scan_ms = 0.0, max_scan_ms = 0.0, job_ms = 0.0, map_ms = 0.0, save_ms = 0.0;
     double session_ms = 0.0;
     std::size_t paused_scans = 0, weak_matches = 0, sessions_ended = 0;
@@ -147,6 +149,7 @@ class SlamServer {
   std::unique_ptr<Mapping> nextSession(SlamState state) const;
   bool goOnWith(std::unique_ptr<Mapping>* next);
   void changeSession();
+  SlamState storedState();
   std::string saveState(const std::string& path);
   void saveIfChanged(const char* when);
   std::string pathOrDefault(const std::string& path) const;
@@ -154,7 +157,7 @@ class SlamServer {
   std_msgs::Header header(const std::string& frame) const;
 
   const std::string log_name_;
-  const SlamServerParams params_;
+  SlamServerParams params_;  // constant once the state was looked at
 
   std::mutex mutex_;  // guards what follows, up to the next mutex
   std::condition_variable work_;
