@@ -219,14 +219,18 @@ TEST(AlteredLog, stopsOnItsWayAmongPeopleAndDrivesOn) {
   EXPECT_NEAR(stand.end - stand.begin, 3.0, 1e-9);
   for (std::size_t i = 0; i < altered.log.scans.size(); ++i) {
     const hyselam::LaserScan& scan = altered.log.scans[i];
-    if (i > 0) EXPECT_GT(scan.stamp, altered.log.scans[i - 1].stamp);
+    if (i > 0) {
+      EXPECT_GT(scan.stamp, altered.log.scans[i - 1].stamp);
+    }
     const bool stands =
         std::any_of(altered.stands.begin(), altered.stands.end(), [&](const auto& s) {
           return scan.stamp > s.begin + 1e-6 && scan.stamp < s.end + 1e-6;
         });
     const auto hidden = std::count(scan.ranges.begin(), scan.ranges.end(), 0.6F);
     EXPECT_EQ(hidden > static_cast<std::ptrdiff_t>(scan.ranges.size()) / 2 - 10, stands) << i;
-    if (stands) EXPECT_EQ(altered.log.odometry[i].pose.x, altered.log.odometry[i - 1].pose.x);
+    if (stands) {
+      EXPECT_EQ(altered.log.odometry[i].pose.x, altered.log.odometry[i - 1].pose.x);
+    }
   }
   EXPECT_NEAR(altered.log.scans.back().stamp, log.scans.back().stamp + 6.0, 1e-9);
   EXPECT_EQ(altered.log.odometry.back().pose.x, log.odometry.back().pose.x);
@@ -263,6 +267,7 @@ TEST(AlteredLog, isCarriedOffAndLeftStanding) {
   EXPECT_NEAR(altered.stands[0].begin, altered.log.scans[jump].stamp, 1e-9);
   for (std::size_t i = jump; i <= jump + 20; ++i) {
     EXPECT_EQ(altered.log.scans[i].ranges, altered.log.scans[jump].ranges);
+    EXPECT_NEAR(altered.log.odometry[i].pose.x, altered.log.odometry[jump - 1].pose.x, 1e-9);
   }
   EXPECT_NE(altered.log.scans[jump + 21].ranges, altered.log.scans[jump].ranges);
 }

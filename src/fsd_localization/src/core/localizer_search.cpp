@@ -38,6 +38,9 @@ void Localizer::forgetSearch() {
   if (search_.background) search_.background->drop();
   search_.waits_from.reset();
   search_.verdict.reset();
+  search_.judged_at.reset();
+  search_.standing.reset();
+  search_.tracked.reset();
   search_.alarm.reset();
   search_.signs = {};
   search_.usual_match.reset();
@@ -69,6 +72,30 @@ std::vector<hyselam::Point2> Localizer::shortTermPoints(const Pose2& base_in_map
   return points;
 }
 
+/// Whether something about a standing robot is to be told: it begins to see what does not fit the
+/// map, or ceases to, or a search has confirmed its pose since.
+bool Localizer::watchStanding(bool stands, const hyselam::LaserScan& scan, const Pose2& delta) {
+  if (!stands || !search_.tracked || state_ != LocalizerState::kTracking) {
+    search_.standing.reset();
+    search_.doubted_standing = false;
+    return false;
+  }
+  const auto ratio =
+      likelihood_model_->inlierRatio(scan, *search_.tracked * delta, params_.inlier_distance);
+  const double fits = std::max(params_.lost_inlier_ratio, params_.found_inlier_ratio);
+  if (!search_.standing.add(scan.stamp, ratio, params_.lost_inlier_ratio, fits)) {
+    const bool confirmed = search_.doubted_standing && !search_.alarm.isDoubtful();
+    if (confirmed) search_.doubted_standing = false;
+    return confirmed;
+  }
+  if (search_.standing.isLow()) {
+    search_.signs.very_low = search_.signs.low = search_.doubted_standing = true;
+  } else {
+    search_.waits_from.reset();  // asked again, by a scan that fits
+  }
+  return true;
+}
+
 /// Whether the pose explains the last metres worse than usual.
 bool Localizer::fitsWorse(const PoseEstimate& estimate) {
   if (search_.score.isDue(search_.way) && !search_.submap.empty()) {
@@ -85,11 +112,12 @@ void Localizer::watchForAlarms(const PoseEstimate& estimate, LocalizationResult&
   search_.signs = {};
   signs.odd = inliers_.isOdd(kUsual);
   signs.unusual = !inliers_.isUsual(kUsual);
-  signs.very_low = inliers_.isBelow(params_.lost_inlier_ratio, 0.0);
-  signs.low = inliers_.isBelow(params_.lost_inlier_ratio, params_.lost_relative_ratio);
+  signs.very_low = signs.very_low || inliers_.isBelow(params_.lost_inlier_ratio, 0.0);
+  signs.low = signs.low || inliers_.isBelow(params_.lost_inlier_ratio, params_.lost_relative_ratio);
   signs.worse = fitsWorse(estimate);
   if (search_.alarm.add(search_.way, signs)) {
     search_.background->drop();  // what was asked before says nothing about it
+    search_.judged_at.reset();
     if (signs.odd || signs.low) {
       search_.waits_from.reset();  // asked at once
     } else {
@@ -123,17 +151,33 @@ void Localizer::updateBySearch(const PoseEstimate& estimate, double motion,
     result.converged = false;
   }
   takeAnswer(estimate, result);
-  // A place that is only supposed, the only one that fits, does not look certain.
-  if (!result.converged && state_ != LocalizerState::kTracking) {
-    result.covariance(0, 0) = std::max(result.covariance(0, 0), kSupposedVariance);
-    result.covariance(1, 1) = std::max(result.covariance(1, 1), kSupposedVariance);
-  }
+  if (!result.converged) widen(result);
+  result.misfits_standing = search_.standing.isLow();
+  search_.tracked = between(map_->geometry().origin, result.base_in_map);
   askSearch(estimate);
   if (search_.verdict) {
     result.place_probability = search_.verdict->probability;
     result.places = search_.verdict->best.seen < kFits
                         ? 0
                         : static_cast<int>(search_.verdict->hypotheses.size());
+  }
+}
+
+/// The covariance of a pose that is not relied on. A place that is only supposed, the only one that
+/// fits, does not look certain; nor does a tracked one in doubt, whose particles know of no other.
+void Localizer::widen(LocalizationResult& result) const {
+  if (state_ == LocalizerState::kTracking && search_.verdict && search_.judged_at) {
+    const Pose2 motion = between(*search_.judged_at, *updated_odom_);
+    const std::vector<Place>& places = search_.verdict->hypotheses;
+    for (const Place& place : places) {
+      const Pose2 base = map_->geometry().origin * place.base * motion;
+      const Eigen::Vector3d off(base.x - result.base_in_map.x, base.y - result.base_in_map.y,
+                                hyselam::normalizeAngle(base.theta - result.base_in_map.theta));
+      result.covariance += off * off.transpose() / static_cast<double>(places.size());
+    }
+  }
+  for (int i : {0, 1}) {
+    result.covariance(i, i) = std::max(result.covariance(i, i), kSupposedVariance);
   }
 }
 
@@ -192,6 +236,7 @@ void Localizer::takeAnswer(const PoseEstimate& estimate, LocalizationResult& res
   const auto answer = search_.background->take(observation_.scan.stamp, wait_for_search_);
   if (!answer) return;
   search_.verdict = judge(*answer, params_.place_odds);
+  search_.judged_at = answer->base_in_odom;
   if (search_.verdict) decide(*answer, *search_.verdict, estimate, result);
 }
 

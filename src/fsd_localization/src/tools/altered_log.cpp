@@ -101,7 +101,9 @@ AlteredLog altered(const hyselam::RobotLog& log, const std::vector<hyselam::Stam
     if (all[k].scan->stamp > all[k - 1].scan->stamp) {
       shift += all[k - 1].scan->stamp - m.scan->stamp;
     }
-    frame = frame * m.odometry * all[k - 1].odometry.inverse();
+    // Of one that is left standing not even a wheel has turned.
+    const Moment& wheels = alterations.stand > 0.0 ? all[k] : all[k - 1];
+    frame = frame * m.odometry * wheels.odometry.inverse();
     carried = true;
     i = k - 1;
   }
