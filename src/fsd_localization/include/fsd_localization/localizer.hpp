@@ -107,7 +107,8 @@ struct LocalizationResult {
   std::size_t particles = 0;
   double effective_size = 0.0;
   std::optional<double> inlier_ratio;  ///< share of inliers among the returns; hybrid only
-  /// The robot stands, and for some seconds its scans have fitted the map badly: was it carried?
+  /// The robot stands, and for some seconds its scans have hardly fitted the map, or worse than
+  /// usual and another place better: was it carried?
   bool misfits_standing = false;
   double travelled = 0.0;  ///< since the start or the last reset [m]
   /// Of the last search: how sure its best place is, 0..1, and how many places are not much worse.
@@ -189,6 +190,7 @@ class Localizer {
   void updateBySearch(const PoseEstimate& estimate, double motion, LocalizationResult& result);
   void watchForAlarms(const PoseEstimate& estimate, LocalizationResult& result);
   bool watchStanding(bool stands, const hyselam::LaserScan& scan, const hyselam::Pose2& delta);
+  bool isInDoubt() const;
   void widen(LocalizationResult& result) const;
   bool fitsWorse(const PoseEstimate& estimate);
   void askSearch(const PoseEstimate& estimate);
@@ -259,7 +261,10 @@ class Localizer {
     std::optional<Verdict> verdict;  // the last one
     /// Where its question was asked, in the smooth frame; nothing: it says nothing about the alarm.
     std::optional<hyselam::Pose2> judged_at;
-    StandingWatch standing;
+    StandingWatch standing;      // whether hardly anything fits the map
+    StandingWatch odd_standing;  // whether less does than usual
+    /// An answer about one that stands has found a better place, and none has denied it since.
+    bool elsewhere = false;
     bool doubted_standing = false;  // and not told since that a search has confirmed the pose
     std::optional<hyselam::Pose2> tracked;  // pose of the last update, in the grid's frame
   };
