@@ -37,9 +37,7 @@ struct Tracked {
     was_lost = false;
   }
   /// @param hidden beams of the scan that end 0.4 m before the laser.
-  void look(const Pose2& step, std::size_t hidden = 0) {
-    look(step, Hidden(hidden, 0.4F));
-  }
+  void look(const Pose2& step, std::size_t hidden = 0) { look(step, Hidden(hidden, 0.4F)); }
   /// @param hidden ranges of the first beams [m], where they are not shorter anyway.
   void look(const Pose2& step, const Hidden& hidden) {
     at = at * step;

@@ -222,10 +222,9 @@ TEST(AlteredLog, stopsOnItsWayAmongPeopleAndDrivesOn) {
     if (i > 0) {
       EXPECT_GT(scan.stamp, altered.log.scans[i - 1].stamp);
     }
-    const bool stands =
-        std::any_of(altered.stands.begin(), altered.stands.end(), [&](const auto& s) {
-          return scan.stamp > s.begin + 1e-6 && scan.stamp < s.end + 1e-6;
-        });
+    const bool stands = std::any_of(
+        altered.stands.begin(), altered.stands.end(),
+        [&](const auto& s) { return scan.stamp > s.begin + 1e-6 && scan.stamp < s.end + 1e-6; });
     const auto hidden = std::count(scan.ranges.begin(), scan.ranges.end(), 0.6F);
     EXPECT_EQ(hidden > static_cast<std::ptrdiff_t>(scan.ranges.size()) / 2 - 10, stands) << i;
     if (stands) {

@@ -24,7 +24,7 @@ constexpr double kFits = 0.3;       // a place with a lower score does not expla
 constexpr double kLikely = 0.5;     // probability from which on a search confirms a pose
 constexpr double kHopeless = 0.01;  // probability of a pose beside a better place: as good as lost
 constexpr double kImpossible = 1e-6;
-constexpr double kThroughWalls = 0.1;  // share of the beams that go through what the map has
+constexpr double kThroughWalls = 0.1;   // share of the beams that go through what the map has
 constexpr double kMapEvidence = 1.5;    // [m] of scans
 constexpr double kAgreedWay = 2.0;      // [m] that filter and search agree before both are believed
 constexpr double kDoubtPerMetre = 2.5;  // of it: times that of a found place, what may be left
@@ -286,9 +286,9 @@ void Localizer::decide(const SearchAnswer& answer, const Verdict& verdict,
     // By what had been seen when it was asked.
     search_.probation.answered(search_.asked_at, fits ? verdict.believed_probability : 0.0,
                                params_.found_probability);
-    const bool is_better =
-        fits && !verdict.best_is_believed && verdict.believed_probability < kHopeless &&
-        answer.blocked >= kThroughWalls;
+    const bool is_better = fits && !verdict.best_is_believed &&
+                           verdict.believed_probability < kHopeless &&
+                           answer.blocked >= kThroughWalls;
     search_.elsewhere = is_better && (search_.elsewhere || search_.odd_standing.isLow());
     if (search_.elsewhere) {
       result.converged = false;

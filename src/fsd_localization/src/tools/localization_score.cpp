@@ -9,10 +9,10 @@
 namespace fsd_localization {
 
 namespace {
-constexpr double kJump = 1.0;       // [m] more than was travelled: the robot was carried
-constexpr double kRightWay = 5.0;   // [m] right for so long: found
+constexpr double kJump = 1.0;             // [m] more than was travelled: the robot was carried
+constexpr double kRightWay = 5.0;         // [m] right for so long: found
 constexpr double kStampTolerance = 1e-3;  // [s]
-constexpr double kAlarmLook = 0.5;  // [m] before an alarm or doubt: was the pose right?
+constexpr double kAlarmLook = 0.5;        // [m] before an alarm or doubt: was the pose right?
 }  // namespace
 
 void LocalizationScore::add(const LocalizationResult& result, const hyselam::Pose2& truth) {
@@ -191,8 +191,8 @@ nlohmann::json LocalizationScore::stands(const std::vector<Stand>& stands) const
     if (first == entries_.begin()) continue;
     const Entry &before = *(first - 1), &last = *(end - 1);
     const auto unsure = std::find_if(first, end, [](const Entry& e) { return !e.converged; });
-    const bool was_lost = std::any_of(
-        first, end, [](const Entry& e) { return e.phase != Phase::kTracking; });
+    const bool was_lost =
+        std::any_of(first, end, [](const Entry& e) { return e.phase != Phase::kTracking; });
     const auto again =
         std::find_if(end, entries_.end(), [](const Entry& e) { return e.converged && e.good; });
     nlohmann::json j = {{"begin_s", stand.begin},
