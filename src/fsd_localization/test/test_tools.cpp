@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "altered_log.hpp"
 #include "fsd_localization/models/grid_ray_caster.hpp"
 #include "hyselam_common/map_io.hpp"
 #include "hyselam_common/ros/bag_io.hpp"
@@ -89,6 +90,17 @@ TEST_F(Tools, LocalizeOfflineSaysThatItWasNeverSure) {
   ASSERT_EQ(localize("--distance 0.05 --model fsd --json " + d / "j.json"), 0);
   ASSERT_TRUE(nlohmann::json::parse(fileBytes(d / "j.json"))["converged_at_m"].is_null());
   EXPECT_NE(errors.find("never sure in 0 m: is this the right map?"), std::string::npos) << errors;
+}
+
+TEST_F(Tools, LocalizeOfflineTellsOfStands) {
+  ASSERT_EQ(localize("--start-known --stops 2 --stand 3 --json " + d / "j.json"), 0) << errors;
+  const auto report = nlohmann::json::parse(fileBytes(d / "j.json"))["against_reference"];
+  ASSERT_EQ(report["stands"].size(), 2U);
+  EXPECT_NEAR(report["stands"][0]["begin_s"], 3.0, 0.21);
+  EXPECT_FALSE(report["stands"][0]["carried"]);
+  EXPECT_TRUE(report["kidnaps"].empty()) << "to stand is no jump";
+  expectRefused(localize("--stops 2 --kidnaps 2"), "--stops");
+  expectRefused(localize("--stops 2 --crowd 1.5"), "--crowd");
 }
 
 TEST_F(Tools, EqualSeedsGiveEqualBytes) {
@@ -190,4 +202,98 @@ TEST(LocalizationScore, aPoseThatIsLeftForAnotherIsAnAlarmAndFalseIfItWasRight) 
     EXPECT_EQ(report["alarms"][0]["false"], was_right);
     EXPECT_EQ(report["false_doubts"], was_right ? 1 : 0);
   }
+}
+
+TEST(AlteredLog, stopsOnItsWayAmongPeopleAndDrivesOn) {
+  const hyselam::RobotLog log = drive();
+  fsd_localization::Alterations stops;
+  stops.stops = 2;
+  stops.stand = 3.0;
+  stops.crowd = 0.5;
+  const auto altered = fsd_localization::altered(log, log.ground_truth, stops);
+  ASSERT_EQ(altered.stands.size(), 2U);
+  ASSERT_EQ(altered.log.scans.size(), log.scans.size() + 2 * 30);
+  ASSERT_EQ(altered.log.odometry.size(), altered.log.scans.size());
+  const auto& stand = altered.stands[0];
+  EXPECT_FALSE(stand.carried);
+  EXPECT_NEAR(stand.end - stand.begin, 3.0, 1e-9);
+  for (std::size_t i = 0; i < altered.log.scans.size(); ++i) {
+    const hyselam::LaserScan& scan = altered.log.scans[i];
+    if (i > 0) {
+      EXPECT_GT(scan.stamp, altered.log.scans[i - 1].stamp);
+    }
+    const bool stands = std::any_of(
+        altered.stands.begin(), altered.stands.end(),
+        [&](const auto& s) { return scan.stamp > s.begin + 1e-6 && scan.stamp < s.end + 1e-6; });
+    const auto hidden = std::count(scan.ranges.begin(), scan.ranges.end(), 0.6F);
+    EXPECT_EQ(hidden > static_cast<std::ptrdiff_t>(scan.ranges.size()) / 2 - 10, stands) << i;
+    if (stands) {
+      EXPECT_EQ(altered.log.odometry[i].pose.x, altered.log.odometry[i - 1].pose.x);
+    }
+  }
+  EXPECT_NEAR(altered.log.scans.back().stamp, log.scans.back().stamp + 6.0, 1e-9);
+  EXPECT_EQ(altered.log.odometry.back().pose.x, log.odometry.back().pose.x);
+}
+
+// It drives 40 m straight on: carried off, it stands before the wheels turn again.
+TEST(AlteredLog, isCarriedOffAndLeftStanding) {
+  hyselam::RobotLog log;
+  for (int i = 0; i < 400; ++i) {
+    hyselam::LaserScan scan;
+    scan.stamp = 0.2 * i;
+    scan.range_max = 20.0;
+    scan.ranges = {static_cast<float>(i)};
+    log.scans.push_back(scan);
+    log.odometry.push_back({scan.stamp, {0.1 * i, 0.0, 0.0}});
+    log.ground_truth.push_back(log.odometry.back());
+  }
+  fsd_localization::Alterations kidnap;
+  kidnap.kidnaps = 1;
+  kidnap.stand = 2.0;
+  const auto altered = fsd_localization::altered(log, log.ground_truth, kidnap);
+  ASSERT_EQ(altered.stands.size(), 1U);
+  EXPECT_TRUE(altered.stands[0].carried);
+  std::size_t jump = 0;
+  for (std::size_t i = 1; i < altered.log.scans.size(); ++i) {
+    EXPECT_GT(altered.log.scans[i].stamp, altered.log.scans[i - 1].stamp);
+    const auto step = [&](const std::vector<hyselam::StampedPose2>& poses) {
+      return hyselam::distance(poses[i].pose, poses[i - 1].pose);
+    };
+    EXPECT_LT(step(altered.log.odometry), 0.11);
+    if (step(altered.log.ground_truth) > 1.0) jump = i;
+  }
+  ASSERT_GT(jump, 0U);
+  EXPECT_NEAR(altered.stands[0].begin, altered.log.scans[jump].stamp, 1e-9);
+  for (std::size_t i = jump; i <= jump + 20; ++i) {
+    EXPECT_EQ(altered.log.scans[i].ranges, altered.log.scans[jump].ranges);
+    EXPECT_NEAR(altered.log.odometry[i].pose.x, altered.log.odometry[jump - 1].pose.x, 1e-9);
+  }
+  EXPECT_NE(altered.log.scans[jump + 21].ranges, altered.log.scans[jump].ranges);
+}
+
+// Stands of two seconds: what was told within them counts, and what comes after.
+TEST(LocalizationScore, tellsWhatAStandingRobotSaid) {
+  fsd_localization::LocalizationScore score({});
+  const auto add = [&](double stamp, double travelled, bool converged) {
+    fsd_localization::LocalizationResult r;
+    r.stamp = stamp;
+    r.travelled = travelled;
+    r.converged = converged;
+    r.phase = fsd_localization::Phase::kTracking;
+    score.add(r, {});
+  };
+  add(1.0, 0.0, true);
+  add(2.5, 0.0, false);  // within the second stand alone
+  add(4.0, 0.5, false);
+  add(5.0, 1.0, true);
+  const auto stands = score.stands({{1.0, 2.0, false}, {2.0, 3.0, false}, {5.0, 6.0, false}});
+  ASSERT_EQ(stands.size(), 3U);
+  EXPECT_TRUE(stands[0]["unsure_after_s"].is_null());
+  EXPECT_TRUE(stands[0]["sure_at_end"]);
+  EXPECT_NEAR(stands[1]["unsure_after_s"], 0.5, 1e-9);
+  EXPECT_TRUE(stands[1]["was_sure"]);
+  EXPECT_FALSE(stands[1]["sure_at_end"]);
+  EXPECT_FALSE(stands[1]["was_lost"]);
+  EXPECT_NEAR(stands[1]["sure_again_after_m"], 1.0, 1e-9);
+  EXPECT_TRUE(stands[2]["sure_again_after_m"].is_null());
 }

@@ -27,6 +27,7 @@
 #include "fsd_localization/search/rival_watch.hpp"
 #include "fsd_localization/search/score_watch.hpp"
 #include "fsd_localization/search/short_term_layer.hpp"
+#include "fsd_localization/search/standing_watch.hpp"
 #include "hyselam_common/parameters.hpp"
 #include "hyselam_scan_matching/scan_odometry.hpp"
 
@@ -95,15 +96,21 @@ struct LocalizerParams {
 struct LocalizationResult {
   double stamp = 0.0;          ///< of the scan [s]
   hyselam::Pose2 base_in_map;  ///< mean of the heaviest cluster
-  /// Of the pose, in the map frame [m, m, rad].
+  /// Of the pose, in the map frame [m, m, rad]. With the search by submaps and not converged: 1 m
+  /// along each axis at least, and while tracking about the spread of the places that the search
+  /// thinks possible.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  bool converged = false;        ///< false: the pose is only the best of several hypotheses
+  bool converged = false;        ///< false: the pose is only the best of several hypotheses, or
+                                 ///< in doubt
   Phase phase = Phase::kGlobal;  ///< kGlobal: not localized yet, by search or among hypotheses
   double cluster_weight = 0.0;   ///< share of the weight in the heaviest cluster, 0..1
   std::size_t particles = 0;
   double effective_size = 0.0;
   std::optional<double> inlier_ratio;  ///< share of inliers among the returns; hybrid only
-  double travelled = 0.0;              ///< since the start or the last reset [m]
+  /// The robot stands, and for some seconds its scans have hardly fitted the map, or worse than
+  /// usual and another place better: was it carried?
+  bool misfits_standing = false;
+  double travelled = 0.0;  ///< since the start or the last reset [m]
   /// Of the last search: how sure its best place is, 0..1, and how many places are not much worse.
   /// 0 places: the map does not explain what is seen.
   std::optional<double> place_probability;
@@ -182,6 +189,9 @@ class Localizer {
   /// The decisions of the search by submaps; see localizer_search.cpp.
   void updateBySearch(const PoseEstimate& estimate, double motion, LocalizationResult& result);
   void watchForAlarms(const PoseEstimate& estimate, LocalizationResult& result);
+  bool watchStanding(bool stands, const hyselam::LaserScan& scan, const hyselam::Pose2& delta);
+  bool isInDoubt() const;
+  void widen(LocalizationResult& result) const;
   bool fitsWorse(const PoseEstimate& estimate);
   void askSearch(const PoseEstimate& estimate);
   bool needsOwnScans() const;
@@ -249,6 +259,14 @@ class Localizer {
     double tracked_from = 0.0, next_check = 0.0;
     bool guided = false;             // a pose was told, and nothing found since
     std::optional<Verdict> verdict;  // the last one
+    /// Where its question was asked, in the smooth frame; nothing: it says nothing about the alarm.
+    std::optional<hyselam::Pose2> judged_at;
+    StandingWatch standing;      // whether hardly anything fits the map
+    StandingWatch odd_standing;  // whether less does than usual
+    /// An answer about one that stands has found a better place, and none has denied it since.
+    bool elsewhere = false;
+    bool doubted_standing = false;  // and not told since that a search has confirmed the pose
+    std::optional<hyselam::Pose2> tracked;  // pose of the last update, in the grid's frame
   };
   Search search_;
   bool wait_for_search_ = true;

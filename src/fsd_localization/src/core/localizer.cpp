@@ -348,10 +348,10 @@ std::optional<LocalizationResult> Localizer::update(const hyselam::LaserScan& sc
   const Pose2 delta = updated_odom_ ? hyselam::between(*updated_odom_, smooth) : Pose2{};
   const double moved = std::hypot(delta.x, delta.y);
   const bool answered = search_.background && search_.background->isDue(scan.stamp);
-  if (updated_odom_ && !force && !answered && moved < params_.update_min_d &&
-      std::abs(delta.theta) < params_.update_min_a) {
-    return std::nullopt;
-  }
+  const bool stands =
+      updated_odom_ && moved < params_.update_min_d && std::abs(delta.theta) < params_.update_min_a;
+  const bool turned_odd = watchStanding(stands, scan, delta);
+  if (stands && !force && !answered && !turned_odd) return std::nullopt;
   updated_odom_ = smooth;
 
   observation_.scan = scan;

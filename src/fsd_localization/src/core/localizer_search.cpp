@@ -24,6 +24,7 @@ constexpr double kFits = 0.3;       // a place with a lower score does not expla
 constexpr double kLikely = 0.5;     // probability from which on a search confirms a pose
 constexpr double kHopeless = 0.01;  // probability of a pose beside a better place: as good as lost
 constexpr double kImpossible = 1e-6;
+constexpr double kThroughWalls = 0.1;   // share of the beams that go through what the map has
 constexpr double kMapEvidence = 1.5;    // [m] of scans
 constexpr double kAgreedWay = 2.0;      // [m] that filter and search agree before both are believed
 constexpr double kDoubtPerMetre = 2.5;  // of it: times that of a found place, what may be left
@@ -38,6 +39,11 @@ void Localizer::forgetSearch() {
   if (search_.background) search_.background->drop();
   search_.waits_from.reset();
   search_.verdict.reset();
+  search_.judged_at.reset();
+  search_.standing.reset();
+  search_.odd_standing.reset();
+  search_.elsewhere = false;
+  search_.tracked.reset();
   search_.alarm.reset();
   search_.signs = {};
   search_.usual_match.reset();
@@ -69,6 +75,36 @@ std::vector<hyselam::Point2> Localizer::shortTermPoints(const Pose2& base_in_map
   return points;
 }
 
+/// Whether something about a standing robot is to be told: it begins to see what does not fit the
+/// map, or ceases to, or a search has confirmed its pose since.
+bool Localizer::watchStanding(bool stands, const hyselam::LaserScan& scan, const Pose2& delta) {
+  if (!stands || !search_.tracked || state_ != LocalizerState::kTracking) {
+    search_.standing.reset();
+    search_.odd_standing.reset();
+    search_.doubted_standing = false;
+    return false;
+  }
+  const auto ratio =
+      likelihood_model_->inlierRatio(scan, *search_.tracked * delta, params_.inlier_distance);
+  // What fits less than usual is asked about: the update finds it odd.
+  const double usual = kUsual * inliers_.usual();
+  const bool changed = search_.odd_standing.add(scan.stamp, ratio, usual, usual);
+  const bool asks = changed && (search_.odd_standing.isLow() || search_.elsewhere);
+  if (asks && !search_.odd_standing.isLow()) search_.waits_from.reset();  // by a scan that fits
+  const double fits = std::max(params_.lost_inlier_ratio, params_.found_inlier_ratio);
+  if (!search_.standing.add(scan.stamp, ratio, params_.lost_inlier_ratio, fits)) {
+    const bool confirmed = search_.doubted_standing && !isInDoubt();
+    if (confirmed) search_.doubted_standing = false;
+    return confirmed || asks;
+  }
+  if (search_.standing.isLow()) {
+    search_.signs.very_low = search_.signs.low = search_.doubted_standing = true;
+  } else {
+    search_.waits_from.reset();  // asked again, by a scan that fits
+  }
+  return true;
+}
+
 /// Whether the pose explains the last metres worse than usual.
 bool Localizer::fitsWorse(const PoseEstimate& estimate) {
   if (search_.score.isDue(search_.way) && !search_.submap.empty()) {
@@ -85,11 +121,12 @@ void Localizer::watchForAlarms(const PoseEstimate& estimate, LocalizationResult&
   search_.signs = {};
   signs.odd = inliers_.isOdd(kUsual);
   signs.unusual = !inliers_.isUsual(kUsual);
-  signs.very_low = inliers_.isBelow(params_.lost_inlier_ratio, 0.0);
-  signs.low = inliers_.isBelow(params_.lost_inlier_ratio, params_.lost_relative_ratio);
+  signs.very_low = signs.very_low || inliers_.isBelow(params_.lost_inlier_ratio, 0.0);
+  signs.low = signs.low || inliers_.isBelow(params_.lost_inlier_ratio, params_.lost_relative_ratio);
   signs.worse = fitsWorse(estimate);
   if (search_.alarm.add(search_.way, signs)) {
     search_.background->drop();  // what was asked before says nothing about it
+    search_.judged_at.reset();
     if (signs.odd || signs.low) {
       search_.waits_from.reset();  // asked at once
     } else {
@@ -98,14 +135,19 @@ void Localizer::watchForAlarms(const PoseEstimate& estimate, LocalizationResult&
   }
   // Meanwhile nobody should rely on the pose; but the robot is not lost before another place is
   // better.
-  if (search_.alarm.isDoubtful() || search_.rivals.hasRival() || search_.probation.isDoubtful()) {
-    result.converged = false;
-  }
+  if (isInDoubt()) result.converged = false;
+  if (search_.odd_standing.isLow() && isInDoubt()) search_.doubted_standing = true;
+}
+
+bool Localizer::isInDoubt() const {
+  return search_.alarm.isDoubtful() || search_.rivals.hasRival() ||
+         search_.probation.isDoubtful() || search_.elsewhere;
 }
 
 void Localizer::updateBySearch(const PoseEstimate& estimate, double motion,
                                LocalizationResult& result) {
   const bool tracking = state_ == LocalizerState::kTracking;
+  const bool was_sure = tracking && result.converged;
   if (!isSearching(state_)) {
     result.inlier_ratio =
         likelihood_model_->inlierRatio(observation_.scan, estimate.mean, params_.inlier_distance);
@@ -123,17 +165,39 @@ void Localizer::updateBySearch(const PoseEstimate& estimate, double motion,
     result.converged = false;
   }
   takeAnswer(estimate, result);
-  // A place that is only supposed, the only one that fits, does not look certain.
-  if (!result.converged && state_ != LocalizerState::kTracking) {
-    result.covariance(0, 0) = std::max(result.covariance(0, 0), kSupposedVariance);
-    result.covariance(1, 1) = std::max(result.covariance(1, 1), kSupposedVariance);
+  // Of one that stands, a doubt that this answer has removed need not be told.
+  if (was_sure && search_.odd_standing.isLow() && state_ == LocalizerState::kTracking &&
+      !isInDoubt()) {
+    result.converged = true;
   }
+  if (!result.converged) widen(result);
+  result.misfits_standing =
+      search_.standing.isLow() || (search_.odd_standing.isLow() && search_.elsewhere);
+  search_.tracked = between(map_->geometry().origin, result.base_in_map);
   askSearch(estimate);
   if (search_.verdict) {
     result.place_probability = search_.verdict->probability;
     result.places = search_.verdict->best.seen < kFits
                         ? 0
                         : static_cast<int>(search_.verdict->hypotheses.size());
+  }
+}
+
+/// The covariance of a pose that is not relied on. A place that is only supposed, the only one that
+/// fits, does not look certain; nor does a tracked one in doubt, whose particles know of no other.
+void Localizer::widen(LocalizationResult& result) const {
+  if (state_ == LocalizerState::kTracking && search_.verdict && search_.judged_at) {
+    const Pose2 motion = between(*search_.judged_at, *updated_odom_);
+    const std::vector<Place>& places = search_.verdict->hypotheses;
+    for (const Place& place : places) {
+      const Pose2 base = map_->geometry().origin * place.base * motion;
+      const Eigen::Vector3d off(base.x - result.base_in_map.x, base.y - result.base_in_map.y,
+                                hyselam::normalizeAngle(base.theta - result.base_in_map.theta));
+      result.covariance += off * off.transpose() / static_cast<double>(places.size());
+    }
+  }
+  for (int i : {0, 1}) {
+    result.covariance(i, i) = std::max(result.covariance(i, i), kSupposedVariance);
   }
 }
 
@@ -192,6 +256,7 @@ void Localizer::takeAnswer(const PoseEstimate& estimate, LocalizationResult& res
   const auto answer = search_.background->take(observation_.scan.stamp, wait_for_search_);
   if (!answer) return;
   search_.verdict = judge(*answer, params_.place_odds);
+  search_.judged_at = answer->base_in_odom;
   if (search_.verdict) decide(*answer, *search_.verdict, estimate, result);
 }
 
@@ -221,6 +286,14 @@ void Localizer::decide(const SearchAnswer& answer, const Verdict& verdict,
     // By what had been seen when it was asked.
     search_.probation.answered(search_.asked_at, fits ? verdict.believed_probability : 0.0,
                                params_.found_probability);
+    const bool is_better = fits && !verdict.best_is_believed &&
+                           verdict.believed_probability < kHopeless &&
+                           answer.blocked >= kThroughWalls;
+    search_.elsewhere = is_better && (search_.elsewhere || search_.odd_standing.isLow());
+    if (search_.elsewhere) {
+      result.converged = false;
+      search_.doubted_standing = true;
+    }
     if (!is_beaten) {
       confirmPose(verdict);
       return;
@@ -302,6 +375,7 @@ void Localizer::trackAt(const Pose2& base_in_grid, LocalizationResult& result) {
   search_.signs = {};
   search_.score.reset();
   search_.rivals.reset();
+  search_.elsewhere = false;
   search_.short_term.clear();
   search_.followed.reset();
   state_ = LocalizerState::kTracking;

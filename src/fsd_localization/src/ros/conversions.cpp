@@ -86,8 +86,8 @@ geometry_msgs::PoseWithCovarianceStamped toMsg(const LocalizationResult& result,
     const Pose2& origin = localizer.map().geometry().origin;
     const Pose2 base_in_grid = hyselam::between(origin, result.base_in_map);
     Eigen::Matrix3d c = rotated(spreadAround(base_in_grid, localizer.particles()), origin.theta);
-    // All particles may lie at one place that is only supposed.
-    for (int i : {0, 1}) c(i, i) = std::max(c(i, i), result.covariance(i, i));
+    // All particles may lie at one place that is only supposed, or in doubt.
+    for (int i : {0, 1, 2}) c(i, i) = std::max(c(i, i), result.covariance(i, i));
     fillCovariance(c, msg.pose.covariance);
   }
   return msg;

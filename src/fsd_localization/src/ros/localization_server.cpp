@@ -323,6 +323,14 @@ void LocalizationServer::noteResult(const LocalizationResult& result, const Pose
                               << hyselam::degrees(result.base_in_map.theta) << " deg after "
                               << result.travelled << " m");
   }
+  const auto looks_carried = [](const LocalizationResult& r) {
+    return r.misfits_standing && !r.converged;
+  };
+  if (looks_carried(result) && !(last_result_ && looks_carried(*last_result_))) {
+    ROS_WARN_STREAM(log_name_ << " " << std::lround(100.0 * result.inlier_ratio.value_or(0.0))
+                              << " % of the returns explained while the robot stands: was it "
+                                 "carried? drive a little, or set a pose");
+  }
   last_result_ = result;
   // An unconverged pose does not move the transform: dead reckoning from the last known pose is
   // better than jumping between hypotheses.

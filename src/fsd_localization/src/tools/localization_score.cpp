@@ -4,13 +4,15 @@
 #include <cmath>
 #include <iomanip>
 #include <ostream>
+#include <utility>
 
 namespace fsd_localization {
 
 namespace {
-constexpr double kJump = 1.0;       // [m] more than was travelled: the robot was carried
-constexpr double kRightWay = 5.0;   // [m] right for so long: found
-constexpr double kAlarmLook = 0.5;  // [m] before an alarm or doubt: was the pose right?
+constexpr double kJump = 1.0;             // [m] more than was travelled: the robot was carried
+constexpr double kRightWay = 5.0;         // [m] right for so long: found
+constexpr double kStampTolerance = 1e-3;  // [s]
+constexpr double kAlarmLook = 0.5;        // [m] before an alarm or doubt: was the pose right?
 }  // namespace
 
 void LocalizationScore::add(const LocalizationResult& result, const hyselam::Pose2& truth) {
@@ -172,6 +174,39 @@ nlohmann::json LocalizationScore::kidnaps() const {
                     {"right_after_m", firstRight(first, end)},
                     {"recovered_after_m", sinceJump(held)},
                     {"wrongly_converged_m", wrong}});
+  }
+  return list;
+}
+
+nlohmann::json LocalizationScore::stands(const std::vector<Stand>& stands) const {
+  nlohmann::json list = nlohmann::json::array();
+  const auto after = [&](double stamp) {
+    return std::find_if(entries_.begin(), entries_.end(),
+                        [&](const Entry& e) { return e.result.stamp > stamp; });
+  };
+  for (const Stand& stand : stands) {
+    // The first scan after a jump is already one of the new place.
+    const auto first = after(stand.begin + (stand.carried ? -kStampTolerance : kStampTolerance));
+    const auto end = after(stand.end + kStampTolerance);
+    if (first == entries_.begin()) continue;
+    const Entry &before = *(first - 1), &last = *(end - 1);
+    const auto unsure = std::find_if(first, end, [](const Entry& e) { return !e.converged; });
+    const bool was_lost =
+        std::any_of(first, end, [](const Entry& e) { return e.phase != Phase::kTracking; });
+    const auto again =
+        std::find_if(end, entries_.end(), [](const Entry& e) { return e.converged && e.good; });
+    nlohmann::json j = {{"begin_s", stand.begin},
+                        {"carried", stand.carried},
+                        {"was_sure", before.converged},
+                        {"was_right", before.good},
+                        {"unsure_after_s", nullptr},
+                        {"was_lost", was_lost},
+                        {"sure_at_end", last.converged},
+                        {"right_at_end", last.good && !(stand.carried && first == end)},
+                        {"sure_again_after_m", nullptr}};
+    if (unsure != end) j["unsure_after_s"] = unsure->result.stamp - stand.begin;
+    if (again != entries_.end()) j["sure_again_after_m"] = again->travelled - last.travelled;
+    list.push_back(std::move(j));
   }
   return list;
 }

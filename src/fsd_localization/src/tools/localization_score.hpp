@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "altered_log.hpp"
 #include "fsd_localization/localizer.hpp"
 
 namespace fsd_localization {
@@ -21,6 +22,10 @@ class LocalizationScore {
   void add(const LocalizationResult& result, const hyselam::Pose2& truth);
 
   nlohmann::json report() const;
+  /// What was told of each stand: whether the robot was sure and right before, after how many
+  /// seconds it was not sure (null: it was all the time), what it was at the end, and after how
+  /// many metres it was sure and right again (null: never).
+  nlohmann::json stands(const std::vector<Stand>& stands) const;
   /// All updates, a line each (CSV with a heading); what is not known stays empty.
   void writeTable(std::ostream& out) const;
 

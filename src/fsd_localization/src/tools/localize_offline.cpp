@@ -8,6 +8,7 @@
 #include <iostream>
 #include <memory>
 
+#include "altered_log.hpp"
 #include "fsd_localization/localizer.hpp"
 #include "hyselam_common/atomic_file.hpp"
 #include "hyselam_common/errors.hpp"
@@ -30,7 +31,7 @@ struct Options {
   std::size_t particles = 20000;
   std::uint64_t seed = 1;
   double start = 0.0, duration = 0.0, distance = 0.0, success_m = 0.5, success_deg = 15.0;
-  std::size_t kidnaps = 0;
+  fsd_localization::Alterations alterations;
   bool cache = false, start_known = false, raw_odometry = false, without_search = false,
        without_short_term = false, search_alone = false;
   hyselam::BagOptions bag_options;
@@ -68,54 +69,6 @@ std::unique_ptr<fsd_localization::Localizer> makeLocalizer(
               << "\n";
   }
   return localizer;
-}
-
-/// The log with parts cut out, stamps closed up; true poses are those of its scans.
-hyselam::RobotLog withKidnaps(const hyselam::RobotLog& log,
-                              const std::vector<hyselam::StampedPose2>& truth, std::size_t count) {
-  struct Moment {
-    const hyselam::LaserScan* scan;
-    Pose2 odometry, truth;
-    double way;
-  };
-  std::vector<Moment> all;
-  for (const hyselam::LaserScan& scan : log.scans) {
-    const auto odom = hyselam::poseAt(log.odometry, scan.stamp, 0.2);
-    const auto at = hyselam::poseAt(truth, scan.stamp, 0.05);
-    if (!odom || !at) continue;
-    const double way =
-        all.empty() ? 0.0 : all.back().way + hyselam::distance(all.back().truth, *at);
-    all.push_back({&scan, *odom, *at, way});
-  }
-  hyselam::RobotLog out;
-  Pose2 frame;  // of the odometry as recorded, in that of the output
-  double shift = 0.0;
-  std::size_t cuts = 0;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const Moment& m = all[i];
-    hyselam::LaserScan scan = *m.scan;
-    scan.stamp -= shift;
-    out.odometry.push_back({scan.stamp, frame * m.odometry});
-    out.ground_truth.push_back({scan.stamp, m.truth});
-    out.scans.push_back(std::move(scan));
-    const double wanted =
-        all.back().way * static_cast<double>(cuts + 1) / static_cast<double>(count + 1);
-    if (cuts == count || m.way < wanted) continue;
-    std::size_t k = i + 1;
-    const auto fits = [&] {
-      const double away = hyselam::distance(all[k].truth, m.truth);
-      return all[k].scan->stamp > m.scan->stamp + 30.0 && away >= 5.0 && away <= 25.0;
-    };
-    while (k < all.size() && !fits()) ++k;
-    if (k >= all.size()) break;
-    ++cuts;
-    shift += all[k].scan->stamp - all[k - 1].scan->stamp > 0.0
-                 ? all[k - 1].scan->stamp - m.scan->stamp
-                 : 0.0;
-    frame = frame * m.odometry * all[k - 1].odometry.inverse();
-    i = k - 1;
-  }
-  return out;
 }
 
 /// A run through the localiser: one entry per update, and what could not be used.
@@ -193,7 +146,13 @@ nlohmann::json run(const Options& o) {
                               "lies after the last scan");
   }
 
-  if (o.kidnaps > 0) log = withKidnaps(log, truth, o.kidnaps);
+  std::vector<fsd_localization::Stand> stands;
+  if (o.alterations.kidnaps > 0 || o.alterations.stops > 0) {
+    fsd_localization::AlteredLog altered = fsd_localization::altered(log, truth, o.alterations);
+    log = std::move(altered.log);
+    truth = log.ground_truth;
+    stands = std::move(altered.stands);
+  }
   const auto localizer = makeLocalizer(map, params, o);
   localizer->keepLocalMap(false);
   if (o.start_known) {
@@ -211,7 +170,7 @@ nlohmann::json run(const Options& o) {
   };
   const std::clock_t cpu = std::clock();
   LocalizationScore score({o.success_m, o.success_deg});
-  const Replay result = replay(update, log, o.kidnaps > 0 ? log.ground_truth : truth, o, score);
+  const Replay result = replay(update, log, truth, o, score);
   const double cpu_s = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
   if (result.trajectory.empty()) {
     throw hyselam::InputError(o.log, "", "no scan could be used for an update");
@@ -235,7 +194,10 @@ nlohmann::json run(const Options& o) {
                       {"phases", result.phases},
                       {"scans_without_odometry", result.without_odometry},
                       {"scans_refused", result.refused}};
-  if (!score.empty()) j["against_reference"] = score.report();
+  if (!score.empty()) {
+    j["against_reference"] = score.report();
+    if (!stands.empty()) j["against_reference"]["stands"] = score.stands(stands);
+  }
   if (result.converged_at.is_null()) {
     std::cerr << "warning: never sure in " << std::lround(result.travelled)
               << " m: is this the right map?\n";
@@ -266,9 +228,19 @@ int main(int argc, char** argv) {
       ->check(CLI::NonNegativeNumber);
   app.add_option("--distance", o.distance, "metres of travel to use; 0: to the end")
       ->check(CLI::NonNegativeNumber);
-  app.add_option("--kidnaps", o.kidnaps,
-                 "times that the robot is carried off: a part of the log, "
-                 "over 30 s long and ending 5 to 25 m away, is cut out, unknown to the wheels");
+  auto* kidnaps =
+      app.add_option("--kidnaps", o.alterations.kidnaps,
+                     "times that the robot is carried off: a part of the log, "
+                     "over 30 s long and ending 5 to 25 m away, is cut out, unknown to the wheels");
+  app.add_option("--stops", o.alterations.stops, "times that it stops on its way for --stand")
+      ->excludes(kidnaps);
+  app.add_option("--stand", o.alterations.stand,
+                 "seconds that it is left standing where it was carried, or stops: its scan comes "
+                 "again, ten times a second")
+      ->check(CLI::Range(0.0, 3600.0));
+  app.add_option("--crowd", o.alterations.crowd,
+                 "share of the beams that people hide meanwhile, 0.6 m before the laser")
+      ->check(CLI::Range(0.0, 1.0));
   app.add_flag("--start-known", o.start_known, "the first pose is told, to 0.5 m and 15 degrees");
   app.add_flag("--raw-odometry", o.raw_odometry, "odometry is not refined by scans");
   app.add_flag("--without-search", o.without_search, "the filter alone, without search by submaps");

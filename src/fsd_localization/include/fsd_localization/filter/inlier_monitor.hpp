@@ -20,6 +20,8 @@ class InlierMonitor {
 
   /// The fast average; 0 before the first ratio.
   double average() const { return fast_.value_or(0.0); }
+  /// What is normal here: the slow average; 0 before the first ratio.
+  double usual() const { return slow_.value_or(0.0); }
   /// Whether the scans of the last steps (an average over about 0.3 m) fit at least `min_relative`
   /// times as well as is normal here. It takes two scans to be unusual, however far apart they are.
   bool isUsual(double min_relative) const;

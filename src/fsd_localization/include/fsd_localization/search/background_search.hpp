@@ -19,6 +19,7 @@ struct SearchAnswer {
   double turned = 0.0;            ///< in it [rad]
   std::vector<Place> places;      ///< best first, in the grid's frame
   std::optional<Place> believed;  ///< the pose that was asked about, refined
+  double blocked = 0.0;           ///< PlaceSearch::blockedShare of it, as it was told
 };
 
 /// One search at a time. An answer counts at the first scan that comes `latency` or more after its

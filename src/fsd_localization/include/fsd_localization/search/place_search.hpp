@@ -45,6 +45,9 @@ class PlaceSearch {
                             const std::function<bool()>& cancelled = {}) const;
   /// The best pose near `guess`.
   Place refine(const Submap& submap, const hyselam::Pose2& guess) const;
+  /// Share of the beams, 0..1, that have something of the map in their way, seen from `base`.
+  /// People and furniture hide walls; nobody sees through them.
+  double blockedShare(const Submap& submap, const hyselam::Pose2& base) const;
 
   /// ScoreLattice::search with at most kPoints of the points of `submap`, evenly taken.
   /// @param believed, cancelled see search().
@@ -65,6 +68,7 @@ class PlaceSearch {
     }
     return geometry_.index({static_cast<int>(x), static_cast<int>(y)});
   }
+  bool isOpen(const hyselam::Point2& laser, const hyselam::Point2& end) const;
   double seenScore(const Submap& submap, const hyselam::Pose2& base, bool sharply) const;
   /// Hill climbing from `guess`; not `sharply`: until it is near enough to be compared.
   Place climb(const Submap& submap, const hyselam::Pose2& guess, bool sharply) const;

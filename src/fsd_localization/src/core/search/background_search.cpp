@@ -25,7 +25,10 @@ void BackgroundSearch::ask(double stamp, const hyselam::Pose2& base_in_odom, Sub
         answer.length = submap.length;
         answer.turned = submap.turned;
         answer.places = search->search(submap, believed, [&] { return cancelled->load(); });
-        if (believed) answer.believed = search->refine(submap, *believed);
+        if (believed) {
+          answer.believed = search->refine(submap, *believed);
+          answer.blocked = search->blockedShare(submap, *believed);
+        }
         return answer;
       });
 }

@@ -163,13 +163,26 @@ double PlaceSearch::seenScore(const Submap& submap, const Pose2& base, bool shar
       const Point2 end = inGrid(in_submap);
       const float hit = table[distanceAt(end.x, end.y)];
       if (hit < 0.01F) continue;
-      const double dx = end.x - laser.x, dy = end.y - laser.y, range = std::hypot(dx, dy);
-      const double open =
-          range > 0.0 ? rays_.rangeAlong(laser.x, laser.y, dx / range, dy / range, range) : 0.0;
-      if (open >= range - kInTheWay && (open > 0.0 || range <= kInTheWay)) sum += hit;
+      if (isOpen(laser, end)) sum += hit;
     }
   }
   return count == 0 ? 0.0 : sum / static_cast<double>(count);
+}
+
+bool PlaceSearch::isOpen(const Point2& laser, const Point2& end) const {
+  const double dx = end.x - laser.x, dy = end.y - laser.y, range = std::hypot(dx, dy);
+  const double open =
+      range > 0.0 ? rays_.rangeAlong(laser.x, laser.y, dx / range, dy / range, range) : 0.0;
+  return open >= range - kInTheWay && (open > 0.0 || range <= kInTheWay);
+}
+
+double PlaceSearch::blockedShare(const Submap& submap, const Pose2& base) const {
+  std::size_t blocked = 0, count = 0;
+  for (const Submap::View& view : submap.views) {
+    count += view.ends.size();
+    for (const Point2& end : view.ends) blocked += !isOpen(base * view.laser, base * end);
+  }
+  return count == 0 ? 0.0 : static_cast<double>(blocked) / static_cast<double>(count);
 }
 
 Place PlaceSearch::refine(const Submap& submap, const Pose2& guess) const {
