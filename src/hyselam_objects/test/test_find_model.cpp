@@ -113,8 +113,8 @@ hyselam_sim::CameraParams kinect() {
   return camera;
 }
 
-std::vector<ModelView> viewsAround(const hyselam_sim::PlacedArticle& thing, int count) {
-  std::vector<ModelView> out;
+std::vector<PlacedView> viewsAround(const hyselam_sim::PlacedArticle& thing, int count) {
+  std::vector<PlacedView> out;
   hyselam::Rng rng(1);
   for (int i = 0; i < count; ++i) {
     const hyselam_sim::Pose3 pose =
