@@ -79,16 +79,15 @@ std::vector<PoseHypothesis> groupCorrespondences(const KeypointCloud& model,
   return hypotheses;
 }
 
-/// Refines a pose of the model by ICP.
+/// Refines a pose of the model by ICP; `farthest`: of corresponding points [m].
 Eigen::Matrix4f refine(const Eigen::Matrix4f& pose, const KeypointCloud& model,
-                       const Cloud::Ptr& scene) {
+                       const Cloud::Ptr& scene, double farthest) {
   constexpr int kIterations = 20;
-  constexpr double kMaxCorrespondence = 0.02;  // [m]
   Cloud::Ptr placed(new Cloud), refined(new Cloud);
   pcl::transformPointCloud(*model.keypoints, *placed, pose);
   pcl::IterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ> icp;
   icp.setMaximumIterations(kIterations);
-  icp.setMaxCorrespondenceDistance(kMaxCorrespondence);
+  icp.setMaxCorrespondenceDistance(farthest);
   icp.setInputSource(placed);
   icp.setInputTarget(scene);
   icp.align(*refined);
@@ -128,11 +127,12 @@ std::vector<PoseHypothesis> joinLooks(const std::vector<std::vector<PoseHypothes
 /// The poses of the model that each look suggests, in the frame of all.
 std::vector<PoseHypothesis> suggestPoses(const KeypointCloud& model, const std::vector<Look>& looks,
                                          const FindModelParams& params) {
+  constexpr double kFarthest = 0.02, kThenFarthest = 0.008;  // [m]
   std::vector<std::vector<PoseHypothesis>> of_looks;
   for (const Look& look : looks) {
     of_looks.push_back(groupCorrespondences(model, look.points, params));
     for (PoseHypothesis& each : of_looks.back()) {
-      each.model = look.camera * refine(each.model, model, look.points.all);
+      each.model = look.camera * refine(each.model, model, look.points.all, kFarthest);
     }
   }
   if (looks.size() == 1) return of_looks[0];
@@ -145,7 +145,10 @@ std::vector<PoseHypothesis> suggestPoses(const KeypointCloud& model, const std::
     *all += placed;
   }
   std::vector<PoseHypothesis> out = joinLooks(of_looks, middle);
-  for (PoseHypothesis& each : out) each.model = refine(each.model, model, all);
+  for (PoseHypothesis& each : out) {
+    each.model = refine(each.model, model, all, kFarthest);
+    each.model = refine(each.model, model, all, kThenFarthest);
+  }
   return joinLooks({out}, middle);
 }
 
@@ -291,7 +294,8 @@ std::vector<FoundModel> findModel(const SurfaceModel& model, const std::vector<P
   const KeypointCloud in_model = describeModel(model, params);
   std::vector<Look> looks;
   for (const PlacedView& view : scene) {
-    looks.push_back({view.camera.matrix(), describeScene(view.cloud, in_model, params),
+    const OrganizedCloud described = scene.size() > 1 ? thingsOf(view.cloud) : view.cloud;
+    looks.push_back({view.camera.matrix(), describeScene(described, in_model, params),
                      SceneView(view.cloud)});
     if (scene.size() > 1 && !looks.back().view.isOne()) {
       throw hyselam::InputError("view " + std::to_string(looks.size()), "",

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <utility>
 
 #include "hyselam_common/errors.hpp"
@@ -151,6 +152,18 @@ KeypointCloud describeScene(const OrganizedCloud& scene, const KeypointCloud& mo
   return describeKeypoints(toPcl(scene, "scene"), Point::Zero(), "scene", params.surface_sampling,
                            params.scene_sampling, params.descriptor_radius,
                            leastNeighbors(model, params));
+}
+
+OrganizedCloud thingsOf(const OrganizedCloud& scene) {
+  const CloudSegmentation found = segmentCloud(scene);  // 2 ... are things
+  if (found.objects == 0) return scene;
+  OrganizedCloud out = scene;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (found.labels[i] < 2) {
+      out.points[i].setConstant(std::numeric_limits<float>::quiet_NaN());
+    }
+  }
+  return out;
 }
 
 }  // namespace hyselam_objects

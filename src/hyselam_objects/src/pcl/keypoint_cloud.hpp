@@ -27,4 +27,8 @@ KeypointCloud describeModel(const SurfaceModel& model, const FindModelParams& pa
 KeypointCloud describeScene(const OrganizedCloud& scene, const KeypointCloud& model,
                             const FindModelParams& params);
 
+/// What stands on a level surface, if there is one; else all of the scene. A table has most of the
+/// points, and looks like any plane.
+OrganizedCloud thingsOf(const OrganizedCloud& scene);
+
 }  // namespace hyselam_objects
