@@ -113,8 +113,8 @@ hyselam_sim::CameraParams kinect() {
   return camera;
 }
 
-std::vector<ModelView> viewsAround(const hyselam_sim::PlacedArticle& thing, int count) {
-  std::vector<ModelView> out;
+std::vector<PlacedView> viewsAround(const hyselam_sim::PlacedArticle& thing, int count) {
+  std::vector<PlacedView> out;
   hyselam::Rng rng(1);
   for (int i = 0; i < count; ++i) {
     const hyselam_sim::Pose3 pose =
@@ -177,6 +177,73 @@ TEST(FindModel, FindsAModelOfSeveralViewsFromAnotherSide) {
   EXPECT_TRUE(findModel(model, scene, params).empty());
 }
 
+/// A pile as a camera sees it from some sides, all poses of it in the table's frame.
+std::vector<PlacedView> looksAt(const std::vector<hyselam_sim::PlacedArticle>& pile, int count) {
+  std::vector<PlacedView> out;
+  hyselam::Rng rng(7);
+  for (int i = 0; i < count; ++i) {
+    const hyselam_sim::Pose3 pose =
+        hyselam_sim::cameraAround(0.3 + 2.0 * hyselam::kPi * i / count, 0.9, 0.85);
+    out.push_back({cloudOf(kinect(), viewOfPile(kinect(), pile, pose, rng)), isometryOf(pose)});
+  }
+  return out;
+}
+
+TEST(FindModel, LooksFromSeveralSidesAreJudgedTogether) {
+  const auto thing = hyselam_sim::standing(hyselam_sim::householdThing("drill"));
+  const SurfaceModel model = learnModel(viewsAround(thing, 6));
+  std::vector<PlacedView> looks = looksAt({thing}, 3);
+  FindModelParams all;
+  all.min_probability = 0.0;
+  const auto found = findModel(model, looks, all);
+  ASSERT_FALSE(found.empty());
+  // The model's frame is the table's, and so is that of the looks.
+  EXPECT_LT(found[0].model_in_scene.translation().norm(), 0.02);
+  EXPECT_LT(Eigen::AngleAxisd(found[0].model_in_scene.linear()).angle(), 0.1);
+  EXPECT_GE(found[0].looks, 2);
+  EXPECT_LE(found[0].looks, 3);
+  // One that sees nothing there speaks against it.
+  hyselam::Rng rng(8);
+  const hyselam_sim::Pose3 pose = hyselam_sim::cameraAround(2.0, 0.9, 0.85);
+  looks.push_back({cloudOf(kinect(), viewOfPile(kinect(), {}, pose, rng)), isometryOf(pose)});
+  const auto doubted = findModel(model, looks, all);
+  ASSERT_FALSE(doubted.empty());
+  EXPECT_LT(doubted[0].coverage, found[0].coverage - 0.1);
+  EXPECT_LT(doubted[0].probability, found[0].probability);
+}
+
+TEST(FindModel, OneLookIsTheSceneInItsFrame) {
+  const auto thing = hyselam_sim::standing(hyselam_sim::householdThing("drill"));
+  const SurfaceModel model = learnModel(viewsAround(thing, 6));
+  const PlacedView look = looksAt({thing}, 1)[0];
+  FindModelParams all;
+  all.min_probability = 0.0;
+  const auto alone = findModel(model, look.cloud, all), placed = findModel(model, {look}, all);
+  ASSERT_FALSE(alone.empty());
+  ASSERT_EQ(placed.size(), alone.size());
+  const Eigen::Isometry3d camera = look.camera.cast<double>();
+  EXPECT_TRUE(placed[0].model_in_scene.isApprox(camera * alone[0].model_in_scene, 1e-4));
+  EXPECT_EQ(placed[0].correspondences, alone[0].correspondences);
+  EXPECT_NEAR(placed[0].coverage, alone[0].coverage, 0.01);
+}
+
+TEST(FindModel, RefusesLooksThatAreNone) {
+  const OrganizedCloud scene = drawTable(2);
+  const SurfaceModel model{largestThing(within(scene, 2.2f)), {}};
+  EXPECT_THROW(findModel(model, std::vector<PlacedView>{}), hyselam::InputError);
+  OrganizedCloud around;  // behind the origin and before it
+  hyselam::Rng rng(3);
+  for (int i = 0; i < 2000; ++i) {
+    around.points.emplace_back(static_cast<float>(rng.uniform(-3.0, 3.0)),
+                               static_cast<float>(rng.uniform(-3.0, 3.0)),
+                               static_cast<float>(rng.uniform(-3.0, 3.0)));
+  }
+  around.width = 2000;
+  around.height = 1;
+  const Eigen::Isometry3f here = Eigen::Isometry3f::Identity();
+  EXPECT_THROW(findModel(model, {{scene, here}, {around, here}}), hyselam::InputError);
+}
+
 TEST(FindModelTool, TellsPosesAndWritesJson) {
   const TemporaryDirectory directory;
   const OrganizedCloud scene = within(drawTable(2), 2.2f);
@@ -211,6 +278,24 @@ TEST(FindModelTool, TellsPosesAndWritesJson) {
     EXPECT_GE(found.at("probability").get<double>(), 0.0);
     EXPECT_LE(found.at("probability").get<double>(), 1.0);
   }
+}
+
+TEST(FindModelTool, SeveralLooksNeedTheirPoses) {
+  const TemporaryDirectory directory;
+  const OrganizedCloud scene = within(drawTable(2), 2.2f);
+  const std::vector<std::uint32_t> labels(scene.size(), 0);
+  writePcd(directory / "scene.pcd", scene, labels);
+  writePcd(directory / "model.pcd", largestThing(scene), labels);
+  const std::string call = (directory / "model.pcd") + " " + (directory / "scene.pcd") + " " +
+                           (directory / "scene.pcd");
+  EXPECT_EQ(shell(call, directory), 2);
+  EXPECT_NE(fileBytes(directory / "stderr").find("--poses"), std::string::npos);
+  std::ofstream(directory / "one.tum") << "0 0 0 0 0 0 0 1\n";
+  EXPECT_EQ(shell(call + " --poses " + (directory / "one.tum"), directory), 2);
+  EXPECT_NE(fileBytes(directory / "stderr").find("1 poses for 2 views"), std::string::npos);
+  std::ofstream(directory / "two.tum") << "0 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n";
+  EXPECT_EQ(shell(call + " --poses " + (directory / "two.tum"), directory), 0)
+      << fileBytes(directory / "stderr");
 }
 
 TEST(FindModelTool, SaysWhatIsWrongWithItsFiles) {

@@ -1,162 +1,24 @@
 #include "hyselam_objects/pcl/find_model.hpp"
 
 #include <pcl/common/transforms.h>
-#include <pcl/features/normal_3d.h>
-#include <pcl/features/shot.h>
-#include <pcl/filters/uniform_sampling.h>
 #include <pcl/kdtree/kdtree_flann.h>
 #include <pcl/recognition/cg/geometric_consistency.h>
 #include <pcl/registration/icp.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <string>
 #include <utility>
 
 #include "hyselam_common/errors.hpp"
+#include "hyselam_common/pose2.hpp"
+#include "keypoint_cloud.hpp"
 #include "model_evidence.hpp"
 
 namespace hyselam_objects {
 namespace {
-
-using Cloud = pcl::PointCloud<pcl::PointXYZ>;
-using Normals = pcl::PointCloud<pcl::Normal>;
-using Shots = pcl::PointCloud<pcl::SHOT352>;
-
-Cloud::Ptr toPcl(const OrganizedCloud& cloud, const char* name) {
-  Cloud::Ptr out(new Cloud);
-  for (const Point& p : cloud.points) {
-    if (p.allFinite()) out->push_back({p.x(), p.y(), p.z()});
-  }
-  if (out->size() < 100) throw hyselam::InputError(name, "", "has fewer than 100 usable points");
-  return out;
-}
-
-/// One point (the mean) in each cube of space, however far apart they are: PCL's grid numbers its
-/// cubes by 32 bits and gives back its input where these do not do.
-Cloud::Ptr thinned(const Cloud::Ptr& cloud, double side, const char* name) {
-  using Cube = std::array<std::int64_t, 3>;  // z, y, x
-  constexpr double kMostCubes = 1e18;        // from the origin; farther ones are one
-  std::vector<std::pair<Cube, std::size_t>> places;
-  for (std::size_t i = 0; i < cloud->size(); ++i) {
-    const auto cubeOf = [&](float x) {
-      const double cube = std::floor(static_cast<double>(x) / side);
-      return static_cast<std::int64_t>(std::clamp(cube, -kMostCubes, kMostCubes));
-    };
-    const pcl::PointXYZ& p = (*cloud)[i];
-    places.push_back({{cubeOf(p.z), cubeOf(p.y), cubeOf(p.x)}, i});
-  }
-  std::sort(places.begin(), places.end());
-  Cloud::Ptr out(new Cloud);
-  for (std::size_t i = 0, end = 0; i < places.size(); i = end) {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (; end < places.size() && places[end].first == places[i].first; ++end) {
-      sum += (*cloud)[places[end].second].getVector3fMap().cast<double>();
-    }
-    const Eigen::Vector3f mean = (sum / static_cast<double>(end - i)).cast<float>();
-    out->push_back({mean.x(), mean.y(), mean.z()});
-  }
-  if (out->size() < kLeastPoints) {
-    throw hyselam::InputError(name, "", "has fewer than 100 usable points in different places");
-  }
-  return out;
-}
-
-struct KeypointCloud {
-  Cloud::Ptr all, keypoints;
-  Normals::Ptr normals;    ///< of all
-  Shots::Ptr descriptors;  ///< of the keypoints
-};
-
-/// How many points are within `radius` of each keypoint, counted up to `most`.
-std::vector<int> neighborsOf(const KeypointCloud& cloud, double radius, int most) {
-  pcl::KdTreeFLANN<pcl::PointXYZ> tree;
-  tree.setInputCloud(cloud.all);
-  std::vector<int> counts, index;
-  std::vector<float> squared;
-  for (const pcl::PointXYZ& p : *cloud.keypoints) {
-    counts.push_back(tree.radiusSearch(p, radius, index, squared, static_cast<unsigned>(most)));
-  }
-  return counts;
-}
-
-void describe(KeypointCloud* cloud, double radius) {
-  cloud->descriptors.reset(new Shots);
-  if (cloud->keypoints->empty()) return;
-  pcl::SHOTEstimation<pcl::PointXYZ, pcl::Normal, pcl::SHOT352> shot;
-  shot.setRadiusSearch(radius);
-  shot.setInputCloud(cloud->keypoints);
-  shot.setInputNormals(cloud->normals);
-  shot.setSearchSurface(cloud->all);
-  shot.compute(*cloud->descriptors);
-}
-
-/// `least`: points within `radius` that a keypoint has. Far from a camera surfaces become points
-/// here and there: many, that look like nothing.
-KeypointCloud describeKeypoints(const Cloud::Ptr& cloud, const Point& seen_from, const char* name,
-                                double surface, double sampling, double radius, int least) {
-  KeypointCloud out;
-  out.all = thinned(cloud, surface, name);
-  out.normals.reset(new Normals);
-  pcl::NormalEstimation<pcl::PointXYZ, pcl::Normal> estimate;
-  estimate.setKSearch(10);
-  estimate.setInputCloud(out.all);
-  estimate.setViewPoint(seen_from.x(), seen_from.y(), seen_from.z());
-  estimate.compute(*out.normals);
-  out.keypoints.reset(new Cloud);
-  pcl::UniformSampling<pcl::PointXYZ> sample;
-  sample.setInputCloud(out.all);
-  sample.setRadiusSearch(sampling);
-  sample.filter(*out.keypoints);
-  if (least > 1) {
-    const std::vector<int> neighbors = neighborsOf(out, radius, least);
-    Cloud::Ptr dense(new Cloud);
-    for (std::size_t i = 0; i < neighbors.size(); ++i) {
-      if (neighbors[i] >= least) dense->push_back((*out.keypoints)[i]);
-    }
-    out.keypoints = dense;
-  }
-  describe(&out, radius);
-  return out;
-}
-
-/// The keypoints of all views of a model, each described by what its camera saw: normals point to
-/// where it was, and of a thin part there is the near side only, as in a scene.
-KeypointCloud describeModel(const SurfaceModel& model, const FindModelParams& params) {
-  const Cloud::Ptr all = toPcl(model.cloud, "model");
-  const auto describeView = [&](const Cloud::Ptr& view, const Point& seen_from) {
-    return describeKeypoints(view, seen_from, "model", params.surface_sampling,
-                             params.model_sampling, params.descriptor_radius, 1);
-  };
-  if (model.seen_from.empty()) return describeView(all, Point::Zero());
-  KeypointCloud out;
-  out.keypoints.reset(new Cloud);
-  out.descriptors.reset(new Shots);
-  for (std::size_t i = 0, end = 0; i < model.cloud.size(); i = end) {
-    OrganizedCloud view;
-    for (; end < model.cloud.size() && model.seen_from.at(end) == model.seen_from[i]; ++end) {
-      view.points.push_back(model.cloud.points[end]);
-    }
-    const KeypointCloud described = describeView(toPcl(view, "model"), model.seen_from[i]);
-    *out.keypoints += *described.keypoints;
-    *out.descriptors += *described.descriptors;
-  }
-  out.all = thinned(all, params.surface_sampling, "model");
-  return out;
-}
-
-/// What a keypoint of a scene has around it at the least, to be like one of the model: a quarter,
-/// which is a surface sampled half as densely.
-int leastNeighbors(const KeypointCloud& model, const FindModelParams& params) {
-  constexpr int kMost = 1000;
-  std::vector<int> counts = neighborsOf(model, params.descriptor_radius, kMost);
-  if (counts.empty()) return 1;
-  const auto median = counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2);
-  std::nth_element(counts.begin(), median, counts.end());
-  return std::max(1, *median / 4);
-}
 
 /// Pairs of a keypoint of the model and one of the scene with similar descriptors.
 pcl::CorrespondencesPtr matchDescriptors(const KeypointCloud& model, const KeypointCloud& scene) {
@@ -177,9 +39,17 @@ pcl::CorrespondencesPtr matchDescriptors(const KeypointCloud& model, const Keypo
   return pairs;
 }
 
+/// One view of the scene.
+struct Look {
+  Eigen::Matrix4f camera;  ///< in the frame of all looks
+  KeypointCloud points;    ///< in its own frame
+  SceneView view;
+};
+
 struct PoseHypothesis {
-  Eigen::Matrix4f model_in_scene;
+  Eigen::Matrix4f model;  ///< in the scene
   std::size_t correspondences = 0;
+  int looks = 1;  ///< that suggest it
 };
 
 /// Poses that many correspondences agree on, those with most first, at most `max_hypotheses`.
@@ -199,7 +69,7 @@ std::vector<PoseHypothesis> groupCorrespondences(const KeypointCloud& model,
   grouping.recognize(poses, groups);
   std::vector<PoseHypothesis> hypotheses;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    hypotheses.push_back({poses[i], groups[i].size()});
+    hypotheses.push_back({poses[i], groups[i].size(), 1});
   }
   std::stable_sort(hypotheses.begin(), hypotheses.end(),
                    [](const PoseHypothesis& a, const PoseHypothesis& b) {
@@ -209,20 +79,77 @@ std::vector<PoseHypothesis> groupCorrespondences(const KeypointCloud& model,
   return hypotheses;
 }
 
-/// Refines a hypothesis by ICP.
-Eigen::Matrix4f refine(const PoseHypothesis& hypothesis, const KeypointCloud& model,
-                       const KeypointCloud& scene) {
+/// Refines a pose of the model by ICP; `farthest`: of corresponding points [m].
+Eigen::Matrix4f refine(const Eigen::Matrix4f& pose, const KeypointCloud& model,
+                       const Cloud::Ptr& scene, double farthest) {
   constexpr int kIterations = 20;
-  constexpr double kMaxCorrespondence = 0.02;  // [m]
   Cloud::Ptr placed(new Cloud), refined(new Cloud);
-  pcl::transformPointCloud(*model.keypoints, *placed, hypothesis.model_in_scene);
+  pcl::transformPointCloud(*model.keypoints, *placed, pose);
   pcl::IterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ> icp;
   icp.setMaximumIterations(kIterations);
-  icp.setMaxCorrespondenceDistance(kMaxCorrespondence);
+  icp.setMaxCorrespondenceDistance(farthest);
   icp.setInputSource(placed);
-  icp.setInputTarget(scene.all);
+  icp.setInputTarget(scene);
   icp.align(*refined);
-  return icp.getFinalTransformation() * hypothesis.model_in_scene;
+  return icp.getFinalTransformation() * pose;
+}
+
+bool isSamePose(const Eigen::Matrix4f& a, const Eigen::Matrix4f& b, const Eigen::Vector4f& middle) {
+  constexpr float kNear = 0.02f;        // [m]
+  constexpr float kNearTurn = 0.2618f;  // [rad], 15 degrees
+  const Eigen::Matrix3f turn = a.topLeftCorner<3, 3>().transpose() * b.topLeftCorner<3, 3>();
+  return (a * middle - b * middle).norm() < kNear &&
+         Eigen::AngleAxisf(turn).angle() < kNearTurn;
+}
+
+/// What several looks suggest, each pose once: with the correspondences of all of them.
+std::vector<PoseHypothesis> joinLooks(const std::vector<std::vector<PoseHypothesis>>& of_looks,
+                                      const Eigen::Vector4f& middle) {
+  std::vector<PoseHypothesis> out;
+  std::vector<std::size_t> last_look;
+  for (std::size_t look = 0; look < of_looks.size(); ++look) {
+    for (const PoseHypothesis& each : of_looks[look]) {  // those with most correspondences first
+      std::size_t at = 0;
+      while (at < out.size() && !isSamePose(out[at].model, each.model, middle)) ++at;
+      if (at == out.size()) {
+        out.push_back(each);
+        last_look.push_back(look);
+      } else if (last_look[at] != look) {
+        out[at].correspondences += each.correspondences;
+        ++out[at].looks;
+        last_look[at] = look;
+      }
+    }
+  }
+  return out;
+}
+
+/// The poses of the model that each look suggests, in the frame of all.
+std::vector<PoseHypothesis> suggestPoses(const KeypointCloud& model, const std::vector<Look>& looks,
+                                         const FindModelParams& params) {
+  constexpr double kFarthest = 0.02, kThenFarthest = 0.008;  // [m]
+  std::vector<std::vector<PoseHypothesis>> of_looks;
+  for (const Look& look : looks) {
+    of_looks.push_back(groupCorrespondences(model, look.points, params));
+    for (PoseHypothesis& each : of_looks.back()) {
+      each.model = look.camera * refine(each.model, model, look.points.all, kFarthest);
+    }
+  }
+  if (looks.size() == 1) return of_looks[0];
+  Eigen::Vector4f middle;
+  pcl::compute3DCentroid(*model.keypoints, middle);
+  Cloud::Ptr all(new Cloud);
+  for (const Look& look : looks) {
+    Cloud placed;
+    pcl::transformPointCloud(*look.points.all, placed, look.camera);
+    *all += placed;
+  }
+  std::vector<PoseHypothesis> out = joinLooks(of_looks, middle);
+  for (PoseHypothesis& each : out) {
+    each.model = refine(each.model, model, all, kFarthest);
+    each.model = refine(each.model, model, all, kThenFarthest);
+  }
+  return joinLooks({out}, middle);
 }
 
 /// Points of the surface of a model, to be judged at poses.
@@ -247,39 +174,54 @@ double probabilityOf(const FoundModel& found) {
 
 struct JudgedModel {
   FoundModel found;
-  std::vector<std::int32_t> pixels;  ///< of the scene that it explains, sorted
+  std::vector<std::int64_t> pixels;  ///< of all looks that it explains, sorted
 };
 
-/// How much of the model is there at a pose, by what can be seen of it.
-JudgedModel judge(const Eigen::Matrix4f& pose, std::size_t correspondences,
-                  const std::vector<Point>& surface, const SceneView& view,
-                  const pcl::KdTreeFLANN<pcl::PointXYZ>& scene_tree, double inlier_distance) {
-  std::vector<Point> placed = surface;
-  const Eigen::Isometry3f motion(pose);
-  for (Point& p : placed) p = motion * p;
+/// By how near the scene is, where it is not one view and nothing is known of what hides what.
+void judgeByDistance(const std::vector<Point>& placed, const Cloud::Ptr& scene, double distance,
+                     JudgedModel* out) {
+  pcl::KdTreeFLANN<pcl::PointXYZ> tree;
+  tree.setInputCloud(scene);
+  std::vector<int> index(1);
+  std::vector<float> squared(1);
+  for (const Point& p : placed) {
+    if (tree.nearestKSearch({p.x(), p.y(), p.z()}, 1, index, squared) == 1 &&
+        squared[0] < static_cast<float>(distance * distance)) {
+      out->pixels.push_back(index[0]);
+      out->found.coverage += 1.0 / static_cast<double>(placed.size());
+    }
+  }
+  out->found.visible = 1.0;
+  std::sort(out->pixels.begin(), out->pixels.end());
+}
+
+/// How much of the model is there at a pose, by what all looks could see of it.
+JudgedModel judge(const PoseHypothesis& pose, const std::vector<Point>& surface,
+                  const std::vector<Look>& looks, double inlier_distance) {
   JudgedModel out;
   FoundModel& found = out.found;
-  found.model_in_scene.matrix() = pose.cast<double>();
-  found.correspondences = correspondences;
-  if (view.isOne()) {
-    ModelEvidence evidence = view.judge(placed, inlier_distance);
-    found.coverage = evidence.coverage;
-    found.visible = evidence.visible;
-    found.flush = evidence.flush;
-    out.pixels = std::move(evidence.pixels);
-  } else {
-    std::vector<int> index(1);
-    std::vector<float> squared(1);
-    for (const Point& p : placed) {
-      if (scene_tree.nearestKSearch({p.x(), p.y(), p.z()}, 1, index, squared) == 1 &&
-          squared[0] < static_cast<float>(inlier_distance * inlier_distance)) {
-        out.pixels.push_back(index[0]);
-        found.coverage += 1.0 / static_cast<double>(placed.size());
-      }
+  found.model_in_scene.matrix() = pose.model.cast<double>();
+  found.correspondences = pose.correspondences;
+  found.looks = pose.looks;
+  ModelEvidence evidence;
+  std::int64_t first_pixel = 0;
+  for (const Look& look : looks) {
+    const Eigen::Isometry3f motion(Eigen::Isometry3f(look.camera).inverse() * pose.model);
+    std::vector<Point> placed = surface;
+    for (Point& p : placed) p = motion * p;
+    if (!look.view.isOne()) {
+      judgeByDistance(placed, look.points.all, inlier_distance, &out);
+      found.probability = probabilityOf(found);
+      return out;  // several looks are views
     }
-    found.visible = 1.0;
-    std::sort(out.pixels.begin(), out.pixels.end());
+    std::vector<std::int32_t> explains;
+    evidence += look.view.judge(placed, inlier_distance, &explains);
+    for (const std::int32_t pixel : explains) out.pixels.push_back(first_pixel + pixel);
+    first_pixel += std::int64_t{1} << 32;
   }
+  found.coverage = evidence.coverage();
+  found.visible = evidence.visible();
+  found.flush = evidence.flushShare();
   found.probability = probabilityOf(found);
   return out;
 }
@@ -291,10 +233,10 @@ std::vector<FoundModel> bestOf(std::vector<JudgedModel> judged, double min_proba
     return a.found.probability > b.found.probability;
   });
   std::vector<FoundModel> out;
-  std::vector<std::int32_t> explained;
+  std::vector<std::int64_t> explained;
   for (const JudgedModel& each : judged) {
     if (each.found.probability < min_probability) break;
-    std::vector<std::int32_t> shared;
+    std::vector<std::int64_t> shared;
     std::set_intersection(each.pixels.begin(), each.pixels.end(), explained.begin(),
                           explained.end(), std::back_inserter(shared));
     if (static_cast<double>(shared.size()) >
@@ -302,7 +244,7 @@ std::vector<FoundModel> bestOf(std::vector<JudgedModel> judged, double min_proba
       continue;
     }
     out.push_back(each.found);
-    std::vector<std::int32_t> all;
+    std::vector<std::int64_t> all;
     std::set_union(each.pixels.begin(), each.pixels.end(), explained.begin(), explained.end(),
                    std::back_inserter(all));
     explained = std::move(all);
@@ -342,19 +284,28 @@ std::vector<FoundModel> findModel(const OrganizedCloud& model, const OrganizedCl
 
 std::vector<FoundModel> findModel(const SurfaceModel& model, const OrganizedCloud& scene,
                                   const FindModelParams& params) {
+  return findModel(model, std::vector<PlacedView>{{scene, Eigen::Isometry3f::Identity()}}, params);
+}
+
+std::vector<FoundModel> findModel(const SurfaceModel& model, const std::vector<PlacedView>& scene,
+                                  const FindModelParams& params) {
   params.validate();
+  if (scene.empty()) throw hyselam::InputError("scene", "", "has no view");
   const KeypointCloud in_model = describeModel(model, params);
-  const KeypointCloud in_scene = describeKeypoints(
-      toPcl(scene, "scene"), Point::Zero(), "scene", params.surface_sampling, params.scene_sampling,
-      params.descriptor_radius, leastNeighbors(in_model, params));
-  const SceneView view(scene);
+  std::vector<Look> looks;
+  for (const PlacedView& view : scene) {
+    const OrganizedCloud described = scene.size() > 1 ? thingsOf(view.cloud) : view.cloud;
+    looks.push_back({view.camera.matrix(), describeScene(described, in_model, params),
+                     SceneView(view.cloud)});
+    if (scene.size() > 1 && !looks.back().view.isOne()) {
+      throw hyselam::InputError("view " + std::to_string(looks.size()), "",
+                                "is not what a camera at its origin sees");
+    }
+  }
   const std::vector<Point> surface = surfaceOf(in_model);
-  pcl::KdTreeFLANN<pcl::PointXYZ> scene_tree;
-  scene_tree.setInputCloud(in_scene.all);
   std::vector<JudgedModel> judged;
-  for (const PoseHypothesis& each : groupCorrespondences(in_model, in_scene, params)) {
-    judged.push_back(judge(refine(each, in_model, in_scene), each.correspondences, surface, view,
-                           scene_tree, params.inlier_distance));
+  for (const PoseHypothesis& each : suggestPoses(in_model, looks, params)) {
+    judged.push_back(judge(each, surface, looks, params.inlier_distance));
   }
   return bestOf(std::move(judged), params.min_probability);
 }

@@ -109,7 +109,8 @@ std::optional<bool> SceneView::goesOn(const Pixel& at, float seen, float u, floa
   return std::abs(depthNear({at.u + u, at.v + v}, straight) - straight) < tolerance;
 }
 
-ModelEvidence SceneView::judge(const std::vector<Point>& points, double tolerance) const {
+ModelEvidence SceneView::judge(const std::vector<Point>& points, double tolerance,
+                               std::vector<std::int32_t>* explains) const {
   constexpr float kThickness = 0.015f;  // of the model's near side [m]
   constexpr float kNearest = 0.05f;     // of a camera's depths [m]
   constexpr int kBeyond = 3;            // cells from a point to beyond the outline
@@ -123,6 +124,7 @@ ModelEvidence SceneView::judge(const std::vector<Point>& points, double toleranc
     placed.push_back(sign_ * p);
     depths.push_back(placed.back().z());
   }
+  if (explains != nullptr) explains->clear();
   if (placed.empty()) return {};
   // One raster for all: with a size for each depth, near and far of one ray would be far apart.
   const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
@@ -136,39 +138,33 @@ ModelEvidence SceneView::judge(const std::vector<Point>& points, double toleranc
   NearSide model;
   for (const Point& p : placed) model.add(cellOf(p), p.z());
   ModelEvidence out;
-  int near_side = 0, covered = 0, violated = 0, outline = 0, flush = 0;
   for (const Point& p : placed) {
     const Cell cell = cellOf(p);
     if (p.z() > model.depthAround(cell) + kThickness) continue;
-    ++near_side;
+    ++out.near_side;
     const Pixel at = project(p);
     const float limit = toleranceAt(p.z(), tolerance);
     const float seen = depthNear(at, p.z());
     if (std::isnan(seen) || seen < p.z() - limit) continue;  // not known, or hidden
     if (seen > p.z() + limit) {
-      ++violated;
+      ++out.violated;
       continue;
     }
-    ++covered;
-    addPixels(at, size, out.pixels);
+    ++out.covered;
+    if (explains != nullptr) addPixels(at, size, *explains);
     for (const auto& [dx, dy] :
          {Cell{kBeyond, 0}, Cell{-kBeyond, 0}, Cell{0, kBeyond}, Cell{0, -kBeyond}}) {
       if (std::isfinite(model.depthAround({cell.first + dx, cell.second + dy}))) continue;
       const auto on = goesOn(at, seen, size * static_cast<float>(dx), size * static_cast<float>(dy),
                              0.5f * limit);
-      outline += on.has_value();
-      flush += on.value_or(false);
+      out.outline += on.has_value();
+      out.flush += on.value_or(false);
     }
   }
-  std::sort(out.pixels.begin(), out.pixels.end());
-  out.pixels.erase(std::unique(out.pixels.begin(), out.pixels.end()), out.pixels.end());
-  const auto share = [](int part, int whole) {
-    return whole > 0 ? static_cast<double>(part) / whole : 0.0;
-  };
-  out.coverage = share(covered, covered + violated);
-  out.violation = share(violated, covered + violated);
-  out.visible = share(covered + violated, near_side);
-  out.flush = share(flush, outline);
+  if (explains != nullptr) {
+    std::sort(explains->begin(), explains->end());
+    explains->erase(std::unique(explains->begin(), explains->end()), explains->end());
+  }
   return out;
 }
 

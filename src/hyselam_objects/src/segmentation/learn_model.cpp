@@ -7,13 +7,13 @@
 
 namespace hyselam_objects {
 
-SurfaceModel learnModel(const std::vector<ModelView>& views, const SegmentParams& params) {
+SurfaceModel learnModel(const std::vector<PlacedView>& views, const SegmentParams& params) {
   if (views.empty()) throw hyselam::InputError("model", "", "needs a view of it");
   const bool with_colors = std::all_of(
-      views.begin(), views.end(), [](const ModelView& view) { return !view.cloud.colors.empty(); });
+      views.begin(), views.end(), [](const PlacedView& view) { return !view.cloud.colors.empty(); });
   SurfaceModel out;
   for (std::size_t i = 0; i < views.size(); ++i) {
-    const ModelView& view = views[i];
+    const PlacedView& view = views[i];
     const Eigen::Vector3f up = view.camera.linear().transpose() * Eigen::Vector3f::UnitZ();
     const CloudSegmentation found = segmentCloud(view.cloud, params, up);
     if (found.objects == 0) {

@@ -1,15 +1,18 @@
-// find_model MODEL.pcd SCENE.pcd: where in a scene an object is of which a cloud is given, or that
-// it is not there.
+// find_model MODEL.pcd SCENE.pcd [...]: where in a scene an object is of which a cloud is given, or
+// that it is not there.
 #include "hyselam_objects/pcl/find_model.hpp"
 
 #include <cstdio>
 #include <ctime>
 #include <iostream>
 #include <string>
+#include <vector>
 
+#include "hyselam_common/errors.hpp"
 #include "hyselam_common/pose2.hpp"
 #include "hyselam_common/tool.hpp"
 #include "hyselam_objects/pcl/cloud_io.hpp"
+#include "hyselam_objects/pcl/placed_views.hpp"
 
 namespace {
 
@@ -57,7 +60,8 @@ nlohmann::json jsonOf(const FoundModel& found, const Eigen::Vector3d& centre) {
           {"correspondences", found.correspondences},
           {"coverage", found.coverage},
           {"visible", found.visible},
-          {"flush", found.flush}};
+          {"flush", found.flush},
+          {"looks", found.looks}};
 }
 
 }  // namespace
@@ -68,15 +72,21 @@ int main(int argc, char** argv) {
       "nothing where the model is not, and each place where it is once, with a probability: its "
       "centre (mean of the model's points) in the scene, and how the model was moved and turned.",
       "find_model");
-  std::string model_file, scene_file;
+  std::string model_file, poses_file;
+  std::vector<std::string> scene_files;
   FindModelParams params;
   app.option_defaults()->always_capture_default();
   app.add_option(
          "MODEL", model_file,
          "PCD file of the object, of one view from its origin, or of several by learn_model [m]")
       ->required();
-  app.add_option("SCENE", scene_file, "PCD file; z forward, x right, y down as cameras have it [m]")
+  app.add_option("SCENE", scene_files,
+                 "PCD file; z forward, x right, y down as cameras have it [m]. Several, with --poses: "
+                 "one scene from several sides")
       ->required();
+  app.add_option("--poses", poses_file,
+                 "TUM file: of each SCENE, in their order, the camera's pose [m]; what is told is in "
+                 "the frame of these");
   app.add_option("--min-probability", params.min_probability,
                  "of a pose that is told, 0 .. 1; 0: all that were looked at");
   app.add_option("--surface-sampling", params.surface_sampling,
@@ -89,7 +99,13 @@ int main(int argc, char** argv) {
   return hyselam::runTool(argc, argv, app, [&] {
     const CloudFile file = readPcd(model_file);
     const SurfaceModel model{file.cloud, file.seen_from};
-    const OrganizedCloud scene = readPcd(scene_file).cloud;
+    if (poses_file.empty() && scene_files.size() > 1) {
+      throw hyselam::InputError("find_model", "--poses", "is needed for several views of a scene");
+    }
+    const std::vector<PlacedView> scene =
+        poses_file.empty()
+            ? std::vector<PlacedView>{{readPcd(scene_files[0]).cloud, Eigen::Isometry3f::Identity()}}
+            : readPlacedViews(scene_files, poses_file);
     const std::clock_t begin = std::clock();
     const std::vector<FoundModel> found = findModel(model, scene, params);
     const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;

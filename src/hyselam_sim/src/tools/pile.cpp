@@ -88,13 +88,23 @@ std::string tumLine(int number, const Pose3& pose) {
 struct Options {
   std::string out, with, without, show;
   std::uint64_t seed = 1;
-  int things = 8;
+  int things = 8, looks = 1;
 };
 
-/// The thing alone, from eight sides. The robot believes to be a little beside where it is.
+/// Where a robot believes its camera to be, a little beside where it is.
+Pose3 believed(const Pose3& pose, hyselam::Rng& rng) {
+  constexpr double kOff = 0.002, kOffTurn = 0.0035;  // [m], [rad]
+  const auto three = [&](double sigma) {
+    return cv::Vec3d{rng.gaussian(0.0, sigma), rng.gaussian(0.0, sigma), rng.gaussian(0.0, sigma)};
+  };
+  const cv::Vec3d turn = three(kOffTurn);
+  return pose * Pose3{hyselam_sim::turnAbout(turn, cv::norm(turn)), three(kOff)};
+}
+
+/// The thing alone, from eight sides.
 nlohmann::json showAlone(const Options& o) {
   constexpr int kViews = 8;
-  constexpr double kDistance = 0.7, kOff = 0.002, kOffTurn = 0.0035;  // [m], [rad]
+  constexpr double kDistance = 0.7;  // [m]
   const CameraParams camera = depthCamera();
   const std::vector<PlacedArticle> table{standing(hyselam_sim::householdThing(o.show))};
   hyselam::Rng rng(o.seed);
@@ -104,13 +114,7 @@ nlohmann::json showAlone(const Options& o) {
     const Pose3 pose = hyselam_sim::cameraAround(2.0 * hyselam::kPi * i / kViews,
                                                  hyselam::radians(40.0), kDistance);
     writeView(o.out + "/view_" + std::to_string(i), camera, viewOfPile(camera, table, pose, rng));
-    const auto three = [&](double sigma) {
-      return cv::Vec3d{rng.gaussian(0.0, sigma), rng.gaussian(0.0, sigma),
-                       rng.gaussian(0.0, sigma)};
-    };
-    const cv::Vec3d turn = three(kOffTurn);
-    const Pose3 error{hyselam_sim::turnAbout(turn, cv::norm(turn)), three(kOff)};
-    poses += tumLine(i, pose * error);
+    poses += tumLine(i, believed(pose, rng));
   }
   hyselam::writeFileAtomically(o.out + "/poses.tum", [&](std::ostream& out) { out << poses; });
   std::cout << kViews << " views of the " << o.show << " -> " << o.out << "\n";
@@ -138,31 +142,69 @@ int pixelsOf(const CameraFrame& frame, std::size_t thing) {
   return cv::countNonZero(frame.owner == static_cast<int>(thing) + 1);
 }
 
+/// Cameras all around the pile, from anywhere on.
+std::vector<Pose3> drawCameras(int looks, hyselam::Rng& rng) {
+  const double first = rng.uniform(0.0, 2.0 * hyselam::kPi);
+  std::vector<Pose3> out;
+  for (int i = 0; i < looks; ++i) {
+    const double elevation = hyselam::radians(rng.uniform(40.0, 60.0));
+    out.push_back(hyselam_sim::cameraAround(first + 2.0 * hyselam::kPi * i / looks, elevation,
+                                            rng.uniform(0.75, 0.95)));
+  }
+  return out;
+}
+
+/// The share of a thing that its pile leaves to be seen, in the mean of all looks.
+double visibleShare(const std::vector<PlacedArticle>& pile, std::size_t thing,
+                    const std::vector<Pose3>& cameras, const std::vector<CameraFrame>& frames,
+                    hyselam::Rng& rng) {
+  int seen = 0, alone = 0;
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    seen += pixelsOf(frames[i], thing);
+    alone += pixelsOf(viewOfPile(depthCamera(), {pile[thing]}, cameras[i], rng), 0);
+  }
+  return static_cast<double>(seen) / std::max(1, alone);
+}
+
+/// NAME.pcd, or NAME_0.pcd ... with NAME.tum.
+void writeLooks(const Options& o, const std::vector<Pose3>& cameras,
+                const std::vector<CameraFrame>& frames, hyselam::Rng& rng) {
+  std::string poses;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const std::string number = frames.size() > 1 ? "_" + std::to_string(i) : "";
+    writeView(o.out + number, depthCamera(), frames[i]);
+    poses += tumLine(static_cast<int>(i), believed(cameras[i], rng));
+  }
+  if (frames.size() == 1) return;
+  hyselam::writeFileAtomically(o.out + ".tum", [&](std::ostream& out) { out << poses; });
+}
+
 /// A pile; one that hides most of the thing that is looked for is thrown away.
 nlohmann::json drawPile(const Options& o) {
   constexpr int kTries = 50;
   constexpr double kLeastVisible = 0.4;
-  const CameraParams camera = depthCamera();
   if (!o.without.empty()) hyselam_sim::householdThing(o.without);
   hyselam::Rng rng(o.seed);
   for (int tries = 1; tries <= kTries; ++tries) {
     const std::vector<PlacedArticle> pile = dropPile(drawThings(o, rng), rng);
-    const Pose3 pose = hyselam_sim::cameraAround(rng.uniform(0.0, 2.0 * hyselam::kPi),
-                                                 hyselam::radians(rng.uniform(40.0, 60.0)),
-                                                 rng.uniform(0.75, 0.95));
-    const CameraFrame frame = viewOfPile(camera, pile, pose, rng);
-    nlohmann::json out{{"seed", o.seed}, {"tries", tries}, {"camera_on_table", matrixOf(pose)}};
+    const std::vector<Pose3> cameras = drawCameras(o.looks, rng);
+    std::vector<CameraFrame> frames;
+    for (const Pose3& camera : cameras) {
+      frames.push_back(viewOfPile(depthCamera(), pile, camera, rng));
+    }
+    nlohmann::json out{{"seed", o.seed}, {"tries", tries}, {"camera_on_table", matrixOf(cameras[0])}};
     for (std::size_t i = 0; i < pile.size(); ++i) {
       const Article& article = *pile[i].article;
       out["things"].push_back(article.name);
       if (article.name != o.with) continue;
-      const CameraFrame alone = viewOfPile(camera, {pile[i]}, pose, rng);
-      out["visible"] = static_cast<double>(pixelsOf(frame, i)) / std::max(1, pixelsOf(alone, 0));
-      out["thing_in_camera"] = matrixOf(pose.inverse() * pile[i].pose);
+      out["visible"] = visibleShare(pile, i, cameras, frames, rng);
+      out["thing_in_camera"] = matrixOf(cameras[0].inverse() * pile[i].pose);
+      out["thing_on_table"] = matrixOf(pile[i].pose);
     }
     if (!o.with.empty() && out["visible"] < kLeastVisible) continue;
-    writeView(o.out, camera, frame);
-    std::cout << pile.size() << " things -> " << o.out << ".pcd\n";
+    writeLooks(o, cameras, frames, rng);
+    std::cout << pile.size() << " things -> " << o.out << (o.looks > 1 ? "_0.pcd ..." : ".pcd")
+              << "\n";
     return out;
   }
   throw hyselam::InputError("pile", "--with", "is hidden in all piles that were tried");
@@ -182,6 +224,10 @@ int main(int argc, char** argv) {
   app.add_option("--out", o.out, "NAME of the pile, FOLDER of the views")->required();
   app.add_option("--seed", o.seed, "of the pile, the camera's place and its noise");
   app.add_option("--things", o.things, "in the pile")->check(CLI::Range(1, 12));
+  app.add_option("--looks", o.looks,
+                 "views of the pile from all around, NAME_0.pcd ..., with where the camera believes to "
+                 "have been, NAME.tum")
+      ->check(CLI::Range(1, 36));
   auto* with =
       app.add_option("--with", o.with, "thing that is in the pile, for at least 40 % seen");
   auto* without = app.add_option("--without", o.without, "thing that is not");

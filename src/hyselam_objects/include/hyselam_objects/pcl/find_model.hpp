@@ -9,6 +9,7 @@
 
 #include "hyselam_common/parameters.hpp"
 #include "hyselam_objects/segmentation/learn_model.hpp"
+#include "hyselam_objects/segmentation/placed_view.hpp"
 
 namespace hyselam_objects {
 
@@ -36,6 +37,7 @@ struct FoundModel {
   double visible = 0.0;      ///< share of the points on its near side that nothing hides, 0 .. 1
   double probability = 0.0;  ///< that it is there, 0 .. 1
   double flush = 0.0;        ///< share of its outline at which the scene goes on as it does, 0 .. 1
+  int looks = 1;             ///< of a scene of several views, those in which it was suggested
 };
 
 /// The likely poses, the best first; none where the model is not there, one for each part of the
@@ -45,6 +47,11 @@ struct FoundModel {
 /// @throws hyselam::InputError for clouds with fewer than 100 usable points;
 ///         hyselam::ParameterError.
 std::vector<FoundModel> findModel(const SurfaceModel& model, const OrganizedCloud& scene,
+                                  const FindModelParams& params = {});
+/// A scene seen from several sides: what one of them suggests is judged by what all could see; poses
+/// are in the frame that the views have in common. @throws hyselam::InputError also for no view,
+/// and for one of several that is no view from its origin.
+std::vector<FoundModel> findModel(const SurfaceModel& model, const std::vector<PlacedView>& scene,
                                   const FindModelParams& params = {});
 /// A model that was seen from its origin.
 std::vector<FoundModel> findModel(const OrganizedCloud& model, const OrganizedCloud& scene,

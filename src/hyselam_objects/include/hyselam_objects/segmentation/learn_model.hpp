@@ -1,18 +1,12 @@
 // A model of a thing from several views of it, as it stands alone on a level surface.
 #pragma once
 
-#include <Eigen/Geometry>
 #include <vector>
 
+#include "hyselam_objects/segmentation/placed_view.hpp"
 #include "hyselam_objects/segmentation/segment_cloud.hpp"
 
 namespace hyselam_objects {
-
-struct ModelView {
-  OrganizedCloud cloud;
-  /// Where the camera was: its optical frame in a frame of the surface, of which z is up [m].
-  Eigen::Isometry3f camera = Eigen::Isometry3f::Identity();
-};
 
 /// The surface of a thing, as it was seen.
 struct SurfaceModel {
@@ -22,9 +16,9 @@ struct SurfaceModel {
 };
 
 /// What stands on the surface in all views, one after the other, in the frame of the surface: a
-/// cloud of one row, with colors if all views have them.
+/// cloud of one row, with colors if all views have them. z of the views' frame is up.
 /// @throws hyselam::InputError without a view, for one that shows nothing on a level surface, and
 ///         as segmentCloud(); hyselam::ParameterError.
-SurfaceModel learnModel(const std::vector<ModelView>& views, const SegmentParams& params = {});
+SurfaceModel learnModel(const std::vector<PlacedView>& views, const SegmentParams& params = {});
 
 }  // namespace hyselam_objects
