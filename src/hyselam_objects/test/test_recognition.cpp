@@ -118,9 +118,9 @@ TEST(ObjectRecognition, HidesTheBackOfAModelByItsFront) {
   const SceneView view(scene);
   ASSERT_TRUE(view.isOne());
   const ModelEvidence evidence = view.judge(box, 0.01);
-  EXPECT_GT(evidence.visible, 0.85);  // of a side the first 1.5 cm are taken for its front
-  EXPECT_GT(evidence.coverage, 0.95);
-  EXPECT_LT(evidence.flush, 0.05);
+  EXPECT_GT(evidence.visible(), 0.85);  // of a side the first 1.5 cm are taken for its front
+  EXPECT_GT(evidence.coverage(), 0.95);
+  EXPECT_LT(evidence.flushShare(), 0.05);
 }
 
 TEST(ObjectRecognition, RefusesModelsThatAreOnePlace) {
