@@ -286,8 +286,8 @@ TEST(FindModelTool, SeveralLooksNeedTheirPoses) {
   const std::vector<std::uint32_t> labels(scene.size(), 0);
   writePcd(directory / "scene.pcd", scene, labels);
   writePcd(directory / "model.pcd", largestThing(scene), labels);
-  const std::string call = (directory / "model.pcd") + " " + (directory / "scene.pcd") + " " +
-                           (directory / "scene.pcd");
+  const std::string call =
+      (directory / "model.pcd") + " " + (directory / "scene.pcd") + " " + (directory / "scene.pcd");
   EXPECT_EQ(shell(call, directory), 2);
   EXPECT_NE(fileBytes(directory / "stderr").find("--poses"), std::string::npos);
   std::ofstream(directory / "one.tum") << "0 0 0 0 0 0 0 1\n";

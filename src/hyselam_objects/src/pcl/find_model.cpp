@@ -98,8 +98,7 @@ bool isSamePose(const Eigen::Matrix4f& a, const Eigen::Matrix4f& b, const Eigen:
   constexpr float kNear = 0.02f;        // [m]
   constexpr float kNearTurn = 0.2618f;  // [rad], 15 degrees
   const Eigen::Matrix3f turn = a.topLeftCorner<3, 3>().transpose() * b.topLeftCorner<3, 3>();
-  return (a * middle - b * middle).norm() < kNear &&
-         Eigen::AngleAxisf(turn).angle() < kNearTurn;
+  return (a * middle - b * middle).norm() < kNear && Eigen::AngleAxisf(turn).angle() < kNearTurn;
 }
 
 /// What several looks suggest, each pose once: with the correspondences of all of them.
@@ -295,8 +294,8 @@ std::vector<FoundModel> findModel(const SurfaceModel& model, const std::vector<P
   std::vector<Look> looks;
   for (const PlacedView& view : scene) {
     const OrganizedCloud described = scene.size() > 1 ? thingsOf(view.cloud) : view.cloud;
-    looks.push_back({view.camera.matrix(), describeScene(described, in_model, params),
-                     SceneView(view.cloud)});
+    looks.push_back(
+        {view.camera.matrix(), describeScene(described, in_model, params), SceneView(view.cloud)});
     if (scene.size() > 1 && !looks.back().view.isOne()) {
       throw hyselam::InputError("view " + std::to_string(looks.size()), "",
                                 "is not what a camera at its origin sees");

@@ -13,7 +13,7 @@ using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
 struct KeypointCloud {
   Cloud::Ptr all, keypoints;
-  pcl::PointCloud<pcl::Normal>::Ptr normals;        ///< of all; empty for a model of several views
+  pcl::PointCloud<pcl::Normal>::Ptr normals;       ///< of all; empty for a model of several views
   pcl::PointCloud<pcl::SHOT352>::Ptr descriptors;  ///< of the keypoints
 };
 

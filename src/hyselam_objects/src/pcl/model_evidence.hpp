@@ -15,7 +15,7 @@ struct ModelEvidence {
   int covered = 0;    ///< ... and that lie on the scene
   int violated = 0;   ///< ... and that the camera looks through
   int outline = 0;    ///< places at its outline beyond which something is seen
-  int flush = 0;      ///< ... where the scene goes on straight: nothing tells it from what it lies in
+  int flush = 0;  ///< ... where the scene goes on straight: nothing tells it from what it lies in
 
   /// Share of the visible points that lie on the scene.
   double coverage() const { return share(covered, covered + violated); }

@@ -9,8 +9,9 @@ namespace hyselam_objects {
 
 SurfaceModel learnModel(const std::vector<PlacedView>& views, const SegmentParams& params) {
   if (views.empty()) throw hyselam::InputError("model", "", "needs a view of it");
-  const bool with_colors = std::all_of(
-      views.begin(), views.end(), [](const PlacedView& view) { return !view.cloud.colors.empty(); });
+  const bool with_colors = std::all_of(views.begin(), views.end(), [](const PlacedView& view) {
+    return !view.cloud.colors.empty();
+  });
   SurfaceModel out;
   for (std::size_t i = 0; i < views.size(); ++i) {
     const PlacedView& view = views[i];

@@ -80,13 +80,15 @@ int main(int argc, char** argv) {
          "MODEL", model_file,
          "PCD file of the object, of one view from its origin, or of several by learn_model [m]")
       ->required();
-  app.add_option("SCENE", scene_files,
-                 "PCD file; z forward, x right, y down as cameras have it [m]. Several, with --poses: "
-                 "one scene from several sides")
+  app.add_option(
+         "SCENE", scene_files,
+         "PCD file; z forward, x right, y down as cameras have it [m]. Several, with --poses: "
+         "one scene from several sides")
       ->required();
-  app.add_option("--poses", poses_file,
-                 "TUM file: of each SCENE, in their order, the camera's pose [m]; what is told is in "
-                 "the frame of these");
+  app.add_option(
+      "--poses", poses_file,
+      "TUM file: of each SCENE, in their order, the camera's pose [m]; what is told is in "
+      "the frame of these");
   app.add_option("--min-probability", params.min_probability,
                  "of a pose that is told, 0 .. 1; 0: all that were looked at");
   app.add_option("--surface-sampling", params.surface_sampling,
@@ -103,9 +105,9 @@ int main(int argc, char** argv) {
       throw hyselam::InputError("find_model", "--poses", "is needed for several views of a scene");
     }
     const std::vector<PlacedView> scene =
-        poses_file.empty()
-            ? std::vector<PlacedView>{{readPcd(scene_files[0]).cloud, Eigen::Isometry3f::Identity()}}
-            : readPlacedViews(scene_files, poses_file);
+        poses_file.empty() ? std::vector<PlacedView>{{readPcd(scene_files[0]).cloud,
+                                                      Eigen::Isometry3f::Identity()}}
+                           : readPlacedViews(scene_files, poses_file);
     const std::clock_t begin = std::clock();
     const std::vector<FoundModel> found = findModel(model, scene, params);
     const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;

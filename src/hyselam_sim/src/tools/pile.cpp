@@ -192,7 +192,8 @@ nlohmann::json drawPile(const Options& o) {
     for (const Pose3& camera : cameras) {
       frames.push_back(viewOfPile(depthCamera(), pile, camera, rng));
     }
-    nlohmann::json out{{"seed", o.seed}, {"tries", tries}, {"camera_on_table", matrixOf(cameras[0])}};
+    nlohmann::json out{
+        {"seed", o.seed}, {"tries", tries}, {"camera_on_table", matrixOf(cameras[0])}};
     for (std::size_t i = 0; i < pile.size(); ++i) {
       const Article& article = *pile[i].article;
       out["things"].push_back(article.name);
@@ -224,9 +225,10 @@ int main(int argc, char** argv) {
   app.add_option("--out", o.out, "NAME of the pile, FOLDER of the views")->required();
   app.add_option("--seed", o.seed, "of the pile, the camera's place and its noise");
   app.add_option("--things", o.things, "in the pile")->check(CLI::Range(1, 12));
-  app.add_option("--looks", o.looks,
-                 "views of the pile from all around, NAME_0.pcd ..., with where the camera believes to "
-                 "have been, NAME.tum")
+  app.add_option(
+         "--looks", o.looks,
+         "views of the pile from all around, NAME_0.pcd ..., with where the camera believes to "
+         "have been, NAME.tum")
       ->check(CLI::Range(1, 36));
   auto* with =
       app.add_option("--with", o.with, "thing that is in the pile, for at least 40 % seen");

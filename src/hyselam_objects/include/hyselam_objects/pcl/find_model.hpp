@@ -48,9 +48,9 @@ struct FoundModel {
 ///         hyselam::ParameterError.
 std::vector<FoundModel> findModel(const SurfaceModel& model, const OrganizedCloud& scene,
                                   const FindModelParams& params = {});
-/// A scene seen from several sides: what one of them suggests is judged by what all could see; poses
-/// are in the frame that the views have in common. @throws hyselam::InputError also for no view,
-/// and for one of several that is no view from its origin.
+/// A scene seen from several sides: what one of them suggests is judged by what all could see;
+/// poses are in the frame that the views have in common. @throws hyselam::InputError also for no
+/// view, and for one of several that is no view from its origin.
 std::vector<FoundModel> findModel(const SurfaceModel& model, const std::vector<PlacedView>& scene,
                                   const FindModelParams& params = {});
 /// A model that was seen from its origin.
