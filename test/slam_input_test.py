@@ -53,7 +53,7 @@ class SlamRig(Rig):
 
     def close(self):
         if self.process:
-            self.process.terminate()
+            self.process.send_signal(signal.SIGINT)  # by SIGTERM it would stay registered
             self.process.wait()
             self.loaded = False
         if self.map_heard:
