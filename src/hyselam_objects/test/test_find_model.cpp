@@ -244,12 +244,18 @@ TEST(FindModel, RefusesLooksThatAreNone) {
   EXPECT_THROW(findModel(model, {{scene, here}, {around, here}}), hyselam::InputError);
 }
 
-TEST(FindModelTool, TellsPosesAndWritesJson) {
-  const TemporaryDirectory directory;
-  const OrganizedCloud scene = within(drawTable(2), 2.2f);
+/// scene.pcd, which it returns, and model.pcd: a thing of it.
+OrganizedCloud writeSceneAndModel(const TemporaryDirectory& directory) {
+  OrganizedCloud scene = within(drawTable(2), 2.2f);
   const std::vector<std::uint32_t> labels(scene.size(), 0);
   writePcd(directory / "scene.pcd", scene, labels);
   writePcd(directory / "model.pcd", largestThing(scene), labels);
+  return scene;
+}
+
+TEST(FindModelTool, TellsPosesAndWritesJson) {
+  const TemporaryDirectory directory;
+  const OrganizedCloud scene = writeSceneAndModel(directory);
   ASSERT_EQ(shell((directory / "model.pcd") + " " + (directory / "scene.pcd") +
                       " --min-probability 0 --json " + (directory / "j.json"),
                   directory),
@@ -282,10 +288,7 @@ TEST(FindModelTool, TellsPosesAndWritesJson) {
 
 TEST(FindModelTool, SeveralLooksNeedTheirPoses) {
   const TemporaryDirectory directory;
-  const OrganizedCloud scene = within(drawTable(2), 2.2f);
-  const std::vector<std::uint32_t> labels(scene.size(), 0);
-  writePcd(directory / "scene.pcd", scene, labels);
-  writePcd(directory / "model.pcd", largestThing(scene), labels);
+  writeSceneAndModel(directory);
   const std::string call =
       (directory / "model.pcd") + " " + (directory / "scene.pcd") + " " + (directory / "scene.pcd");
   EXPECT_EQ(shell(call, directory), 2);

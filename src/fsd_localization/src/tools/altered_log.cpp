@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "log_moments.hpp"
+
 namespace fsd_localization {
 
 using hyselam::Pose2;
@@ -13,29 +15,9 @@ namespace {
 constexpr double kScanStep = 0.1;    // [s] between scans of one that stands
 constexpr float kPeopleRange = 0.6;  // [m]
 
-struct Moment {
-  const hyselam::LaserScan* scan;
-  Pose2 odometry, truth;
-  double way;  // [m]
-};
-
-std::vector<Moment> momentsOf(const hyselam::RobotLog& log,
-                              const std::vector<hyselam::StampedPose2>& truth) {
-  std::vector<Moment> all;
-  for (const hyselam::LaserScan& scan : log.scans) {
-    const auto odom = hyselam::poseAt(log.odometry, scan.stamp, 0.2);
-    const auto at = hyselam::poseAt(truth, scan.stamp, 0.05);
-    if (!odom || !at) continue;
-    const double way =
-        all.empty() ? 0.0 : all.back().way + hyselam::distance(all.back().truth, *at);
-    all.push_back({&scan, *odom, *at, way});
-  }
-  return all;
-}
-
 /// The moment that the robot is carried to from moment i; the number of all if there is none.
-std::size_t carriedTo(const std::vector<Moment>& all, std::size_t i) {
-  const auto fits = [&](const Moment& m) {
+std::size_t carriedTo(const std::vector<LogMoment>& all, std::size_t i) {
+  const auto fits = [&](const LogMoment& m) {
     const double away = hyselam::distance(m.truth, all[i].truth);
     return m.scan->stamp > all[i].scan->stamp + 30.0 && away >= 5.0 && away <= 25.0;
   };
@@ -58,12 +40,12 @@ void hide(hyselam::LaserScan& scan, double share) {
 
 AlteredLog altered(const hyselam::RobotLog& log, const std::vector<hyselam::StampedPose2>& truth,
                    const Alterations& alterations) {
-  const std::vector<Moment> all = momentsOf(log, truth);
+  const std::vector<LogMoment> all = momentsOf(log, truth);
   AlteredLog result;
   hyselam::RobotLog& out = result.log;
   Pose2 frame;         // of the odometry as recorded, in that of the output
   double shift = 0.0;  // [s] of the stamps, backwards
-  const auto add = [&](const Moment& m, double later, double crowd) {
+  const auto add = [&](const LogMoment& m, double later, double crowd) {
     hyselam::LaserScan scan = *m.scan;
     scan.stamp += later - shift;
     hide(scan, crowd);
@@ -71,7 +53,7 @@ AlteredLog altered(const hyselam::RobotLog& log, const std::vector<hyselam::Stam
     out.ground_truth.push_back({scan.stamp, m.truth});
     out.scans.push_back(std::move(scan));
   };
-  const auto stand = [&](const Moment& m, bool carried) {
+  const auto stand = [&](const LogMoment& m, bool carried) {
     const int scans = static_cast<int>(std::lround(alterations.stand / kScanStep));
     if (scans == 0) return;
     for (int s = 1; s <= scans; ++s) add(m, s * kScanStep, alterations.crowd);
@@ -84,7 +66,7 @@ AlteredLog altered(const hyselam::RobotLog& log, const std::vector<hyselam::Stam
   std::size_t done = 0;
   bool carried = false;  // just now
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const Moment& m = all[i];
+    const LogMoment& m = all[i];
     add(m, 0.0, 0.0);
     if (carried) stand(m, true);
     carried = false;
@@ -102,7 +84,7 @@ AlteredLog altered(const hyselam::RobotLog& log, const std::vector<hyselam::Stam
       shift += all[k - 1].scan->stamp - m.scan->stamp;
     }
     // Of one that is left standing not even a wheel has turned.
-    const Moment& wheels = alterations.stand > 0.0 ? all[k] : all[k - 1];
+    const LogMoment& wheels = alterations.stand > 0.0 ? all[k] : all[k - 1];
     frame = frame * m.odometry * wheels.odometry.inverse();
     carried = true;
     i = k - 1;

@@ -12,6 +12,7 @@
 #include "hyselam_common/tool.hpp"
 #include "hyselam_common/trajectory_io.hpp"
 #include "hyselam_scan_matching/scan_odometry.hpp"
+#include "log_moments.hpp"
 
 namespace {
 
@@ -25,25 +26,6 @@ struct Options {
   std::vector<double> lengths{0.0, 1.0, 2.0, 5.0, 10.0};
   hyselam::BagOptions bag_options;
 };
-
-struct Moment {
-  const hyselam::LaserScan* scan;
-  Pose2 odometry, truth;
-  double way;
-};
-
-std::vector<Moment> momentsOf(const hyselam::RobotLog& log,
-                              const std::vector<hyselam::StampedPose2>& truth) {
-  std::vector<Moment> all;
-  for (const hyselam::LaserScan& scan : log.scans) {
-    const auto odom = hyselam::poseAt(log.odometry, scan.stamp, 0.2);
-    const auto at = hyselam::poseAt(truth, scan.stamp, 0.05);
-    if (!odom || !at) continue;
-    all.push_back(
-        {&scan, *odom, *at, all.empty() ? 0.0 : all.back().way + distance(all.back().truth, *at)});
-  }
-  return all;
-}
 
 /// Whether the search finds the truth best, by how much, and how sure that looks from within.
 nlohmann::json record(const PlaceSearch& search, const Submap& submap, const Pose2& truth,
@@ -83,7 +65,7 @@ nlohmann::json run(const Options& o) {
   const hyselam::OccupancyGrid map = hyselam::loadMap(o.map);
   const hyselam::RobotLog log = hyselam::readRobotLog(o.log, o.bag_options);
   const auto truth = o.reference.empty() ? log.ground_truth : hyselam::readPoses(o.reference).poses;
-  const std::vector<Moment> all = momentsOf(log, truth);
+  const std::vector<LogMoment> all = momentsOf(log, truth);
   if (all.empty()) throw hyselam::InputError(o.log, "", "no scan with odometry and a true pose");
   const std::clock_t cpu = std::clock();
   const PlaceSearch search(map);
@@ -97,7 +79,7 @@ nlohmann::json run(const Options& o) {
     const double at = first + room * static_cast<double>(k) /
                                   static_cast<double>(std::max<std::size_t>(1, o.starts - 1));
     auto i = static_cast<std::size_t>(
-        std::find_if(all.begin(), all.end(), [&](const Moment& m) { return m.way >= at; }) -
+        std::find_if(all.begin(), all.end(), [&](const LogMoment& m) { return m.way >= at; }) -
         all.begin());
     hyselam_scan_matching::ScanOdometry odometry;
     SubmapBuilder submap;

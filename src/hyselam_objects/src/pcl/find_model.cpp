@@ -44,7 +44,19 @@ struct Look {
   Eigen::Matrix4f camera;  ///< in the frame of all looks
   KeypointCloud points;    ///< in its own frame
   SceneView view;
+  pcl::KdTreeFLANN<pcl::PointXYZ>::Ptr tree;  ///< of all points, where it is not one view
 };
+
+Look lookAt(const PlacedView& view, const OrganizedCloud& described, const KeypointCloud& model,
+            const FindModelParams& params) {
+  Look out{
+      view.camera.matrix(), describeScene(described, model, params), SceneView(view.cloud), {}};
+  if (!out.view.isOne()) {
+    out.tree.reset(new pcl::KdTreeFLANN<pcl::PointXYZ>);
+    out.tree->setInputCloud(out.points.all);
+  }
+  return out;
+}
 
 struct PoseHypothesis {
   Eigen::Matrix4f model;  ///< in the scene
@@ -177,14 +189,12 @@ struct JudgedModel {
 };
 
 /// By how near the scene is, where it is not one view and nothing is known of what hides what.
-void judgeByDistance(const std::vector<Point>& placed, const Cloud::Ptr& scene, double distance,
-                     JudgedModel* out) {
-  pcl::KdTreeFLANN<pcl::PointXYZ> tree;
-  tree.setInputCloud(scene);
+void judgeByDistance(const std::vector<Point>& placed, const pcl::KdTreeFLANN<pcl::PointXYZ>& scene,
+                     double distance, JudgedModel* out) {
   std::vector<int> index(1);
   std::vector<float> squared(1);
   for (const Point& p : placed) {
-    if (tree.nearestKSearch({p.x(), p.y(), p.z()}, 1, index, squared) == 1 &&
+    if (scene.nearestKSearch({p.x(), p.y(), p.z()}, 1, index, squared) == 1 &&
         squared[0] < static_cast<float>(distance * distance)) {
       out->pixels.push_back(index[0]);
       out->found.coverage += 1.0 / static_cast<double>(placed.size());
@@ -209,7 +219,7 @@ JudgedModel judge(const PoseHypothesis& pose, const std::vector<Point>& surface,
     std::vector<Point> placed = surface;
     for (Point& p : placed) p = motion * p;
     if (!look.view.isOne()) {
-      judgeByDistance(placed, look.points.all, inlier_distance, &out);
+      judgeByDistance(placed, *look.tree, inlier_distance, &out);
       found.probability = probabilityOf(found);
       return out;  // several looks are views
     }
@@ -294,8 +304,7 @@ std::vector<FoundModel> findModel(const SurfaceModel& model, const std::vector<P
   std::vector<Look> looks;
   for (const PlacedView& view : scene) {
     const OrganizedCloud described = scene.size() > 1 ? thingsOf(view.cloud) : view.cloud;
-    looks.push_back(
-        {view.camera.matrix(), describeScene(described, in_model, params), SceneView(view.cloud)});
+    looks.push_back(lookAt(view, described, in_model, params));
     if (scene.size() > 1 && !looks.back().view.isOne()) {
       throw hyselam::InputError("view " + std::to_string(looks.size()), "",
                                 "is not what a camera at its origin sees");
